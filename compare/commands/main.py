@@ -3,10 +3,9 @@
 import os
 import sys
 from collections.abc import Callable
-from functools import wraps
 from io import TextIOWrapper
 from traceback import format_exc
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from typer.exceptions import TyperException
@@ -47,27 +46,10 @@ COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
 _NAMES = {list_what_there_is: "list"}
 
 
-def _saying_what_ended_it(command: Callable[..., int]) -> Callable[..., int]:
-    """The command, ended by signals in order: what is unfinished goes, and a line says why.
-
-    Typer would turn an interrupt into an exit code without a word.
-    """
-
-    @wraps(command)
-    def ended(*given: Any, **named: Any) -> int:  # noqa: ANN401  # as the command takes them
-        try:
-            with ended_by_signals():
-                return command(*given, **named)
-        except KeyboardInterrupt as error:
-            raise typer.Abort(str(error)) from error
-
-    return ended
-
-
 for group, commands in COMMANDS.items():
     for command in commands:
         name = _NAMES.get(command, command.__name__)
-        app.command(name, rich_help_panel=group)(_saying_what_ended_it(command))
+        app.command(name, rich_help_panel=group)(ended_by_signals()(command))
 
 
 def _show_version(asked: bool) -> None:

@@ -74,6 +74,7 @@ def ended_by_signals() -> Iterator[None]:
 
     Processes that were started for the work end at once. A signal that is ignored, as SIGHUP under
     ``nohup``, stays so; and outside the main thread, where Python allows no handlers, all do.
+    Typer would turn an interrupt into an exit code without a word.
     """
 
     def end(number: int, _: FrameType | None) -> None:
@@ -89,6 +90,8 @@ def ended_by_signals() -> Iterator[None]:
     before = {number: signal.signal(number, end) for number in heard}
     try:
         yield
+    except KeyboardInterrupt as error:
+        raise typer.Abort(str(error)) from error
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -92,10 +92,16 @@ def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
     except QhullError:  # of a flat or tiny part there is nothing to see
         return np.empty((0, 3, 3))
     corners = surface.points[surface.simplices]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
-    inward = (across * surface.equations[:, :3]).sum(axis=1) < 0
+    inward = (normals(corners) * surface.equations[:, :3]).sum(axis=1) < 0
     corners[inward] = corners[inward][:, ::-1]
     return np.asarray(corners)
+
+
+def normals(faces: Floats) -> Floats:
+    """Unit vectors out of triangles whose corners run against the clock."""
+    across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
+    sizes = np.linalg.norm(across, axis=1, keepdims=True)
+    return np.asarray(across / np.maximum(sizes, 1e-300))
 
 
 def _outermost(points: Floats) -> Floats:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from compare.show.scene import SweepScene
+from compare.show.scene import SweepScene, normals
 from compare.show.style import PHASE_NAMES
 
 _STATIONS = 200  # that a slider has
@@ -56,9 +56,7 @@ def _said(scene: SweepScene, station: int) -> str:
 
 
 def _lights(faces: Floats) -> list[float]:
-    across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
-    size = np.maximum(np.linalg.norm(across, axis=1), 1e-300)
-    lit = (1 + across @ _LIGHT / size) / 2
+    lit = (1 + normals(faces) @ _LIGHT) / 2
     found: list[float] = (_DARKEST + (1 - _DARKEST) * lit).round(2).tolist()
     return found
 

@@ -13,7 +13,8 @@ from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from compare.align.travel import travel_of
 from compare.show.animation.film import Heading, Part, framed, write_film
-from compare.show.figures.space import COLOURS, LOADS, Load, draw_scene, label_axes, upright
+from compare.show.figures.over_foot import in_unit
+from compare.show.figures.space import COLOURS, LOADS, draw_scene, label_axes, upright
 from compare.show.scene import SweepScene
 from compare.show.style import CANDIDATE, INK, PHASE_COLOURS
 
@@ -40,8 +41,8 @@ def write_space_animation(
     )  # fmt: skip
     view = heading.figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
     curves = [
-        _Curves(heading.figure.add_subplot(grid[1, i]), one.readings, candidate, load)
-        for i, load in enumerate(LOADS)
+        _Curves(heading.figure.add_subplot(grid[1, i]), one.readings, candidate, title)
+        for i, title in enumerate(LOADS)
     ]
     parts: list[Part] = [_View(view, one, other), *curves]
     return write_film(heading, parts, chosen, touching, folder, advance)
@@ -71,16 +72,16 @@ class _View:
 class _Curves:
     """The components of force or moment: the reference's drawn out, the candidate's by a mark."""
 
-    def __init__(self, ax: Axes, one: SpatialReadings, other: SpatialReadings, load: Load) -> None:
+    def __init__(self, ax: Axes, one: SpatialReadings, other: SpatialReadings, title: str) -> None:
         self._travel = travel_of(one) / one.beam.length
         self._values: list[Floats] = []
         self._marks: list[Line2D] = []
-        for name, colour in zip(load.names, COLOURS, strict=True):
-            ax.plot(self._travel, load.of(one, name), color=colour, linewidth=1, label=name[-1])
+        for name, colour in zip(LOADS[title], COLOURS, strict=True):
+            ax.plot(self._travel, in_unit(one, name), color=colour, linewidth=1, label=name[-1])
             (mark,) = ax.plot([], [], color=colour, marker="o", markersize=6, ls="")
-            self._values.append(load.of(other, name))
+            self._values.append(in_unit(other, name))
             self._marks.append(mark)
-        label_axes(ax, load)
+        label_axes(ax, title)
         self.moving: list[Artist] = [*self._marks]
 
     def show(self, station: int) -> None:

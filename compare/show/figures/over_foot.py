@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
+from analytic.space import SpatialReadings
 from compare.comparison import Comparison
 from compare.sense.phases import Classification
 from compare.show import style
@@ -43,9 +44,15 @@ def foot(readings: Readings) -> Floats:
     return readings.values("foot_x") / readings.beam.length
 
 
-def unit(readings: Readings, name: str) -> float:
+def unit(readings: Readings | SpatialReadings, name: str) -> float:
     """The unit that a clamp reading is drawn in."""
-    return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
+    beam = readings.beam
+    return beam.moment_unit if name.startswith("moment") else beam.force_unit
+
+
+def in_unit(readings: Readings | SpatialReadings, name: str) -> Floats:
+    """A clamp reading as it is drawn; NaN where it is not to be trusted."""
+    return np.where(readings.trusted, readings.values(name) / unit(readings, name), np.nan)
 
 
 def reading_label(readings: Readings, name: str) -> str:
@@ -66,7 +73,7 @@ def foot_label(readings: Readings) -> str:
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
     """A reading as it is drawn."""
     if name in CLAMP_READINGS:
-        return np.where(readings.trusted, readings.values(name) / unit(readings, name), np.nan)
+        return in_unit(readings, name)
     return on_vibrissa(1 - judged.shortfall)
 
 

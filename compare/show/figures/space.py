@@ -1,7 +1,5 @@
 """A sweep in space: body, vibrissa and contacts as they stand, and the readings along the way."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,14 +8,14 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from analytic.problem.arrays import Floats
-from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison import SpatialComparison
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
-from compare.show.scene import SweepScene
+from compare.show.figures.over_foot import in_unit, unit
+from compare.show.scene import SweepScene, normals
 
 _SHAPES = 24  # drawn of a sweep
 _DARK = 0.35  # how much darker a face is that looks away from the light
@@ -28,24 +26,8 @@ COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 _LEAST = 1e-12  # L; contacts that are closer are drawn at this
 
 
-@dataclass(frozen=True)
-class Load:
-    """Force or moment, as it is drawn."""
-
-    names: tuple[str, ...]
-    title: str
-
-    def of(self, readings: SpatialReadings, name: str) -> Floats:
-        """A component in the unit of the title; NaN where it is not to be trusted."""
-        return np.where(readings.trusted, self.scaled(readings, readings.values(name)), np.nan)
-
-    def scaled(self, readings: SpatialReadings, values: Floats) -> Floats:
-        """Values in the unit of the title."""
-        beam = readings.beam
-        return values / (beam.force_unit if self.names == FORCE else beam.moment_unit)
-
-
-LOADS = (Load(FORCE, "$F$ / ($EI/L^2$)"), Load(MOMENT, "$M$ / ($EI/L$)"))
+LOADS = {"$F$ / ($EI/L^2$)": FORCE, "$M$ / ($EI/L$)": MOMENT}
+"""Force and moment by the labels of their axes."""
 
 
 def sweep_in_space(scene: SweepScene) -> Figure:
@@ -61,13 +43,13 @@ def sweep_in_space(scene: SweepScene) -> Figure:
         Line3DCollection(upright(scene.lines[chosen]), colors=colours, linewidths=1.3)
     )
     ax.plot(*upright(scene.contact).T, color=style.INK, marker="o", markersize=1.8, linestyle="")
-    for i, load in enumerate(LOADS):
+    for i, (title, names) in enumerate(LOADS.items()):
         below = figure.add_subplot(grid[1, i])
         travel = travel_of(readings) / readings.beam.length
-        for name, colour in zip(load.names, COLOURS, strict=True):
-            values = load.of(readings, name)
+        for name, colour in zip(names, COLOURS, strict=True):
+            values = in_unit(readings, name)
             below.plot(travel, values, ".-", color=colour, markersize=2.5, label=name[-1])
-        label_axes(below, load)
+        label_axes(below, title)
     figure.suptitle(style.label(readings.source), x=0.01, ha="left", fontsize=style.NORMAL)
     found = Line2D([], [], color=style.INK, marker="o", markersize=3, ls="", label="contact found")
     way = Line2D([], [], color=style.GREY, linestyle="--", label="way of the foot")
@@ -83,16 +65,15 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
     beam = one.beam
     travel = comparison.travel / beam.length
     values = [components(r, comparison.frame) for r in (one, other)]
-    for column, load in enumerate(LOADS):
-        above, below = grid[:, column]
-        for name, colour in zip(load.names, COLOURS, strict=True):
-            exact, found = (load.scaled(one, value[name]) for value in values)
+    for (above, below), (title, names) in zip(grid.T, LOADS.items(), strict=True):
+        for name, colour in zip(names, COLOURS, strict=True):
+            exact, found = (value[name] / unit(one, name) for value in values)
             exact[~one.trusted], found[~other.trusted] = np.nan, np.nan
             above.plot(travel, exact, color=colour, linewidth=1, label=name[-1])
             above.plot(travel, found, color=colour, marker=".", markersize=3, linestyle="")
             off = np.where(comparison.compared, found - exact, np.nan)
             below.plot(travel, off, color=colour, marker=".", markersize=2.5, linewidth=0.8)
-        label_axes(above, load)
+        label_axes(above, title)
         above.set_xlabel("")
         below.set_ylabel("difference")
         below.set_xlabel("way of the foot / $L$")
@@ -150,9 +131,7 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
     """Draw what does not move: the body and the way of the foot, with axes of equal scale."""
     faces = scene.faces
     if len(faces):
-        across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
-        size = np.maximum(np.linalg.norm(across, axis=1), 1e-300)
-        grey = (1 - _DARK) + _DARK * np.abs(across @ _LIGHT) / size
+        grey = (1 - _DARK) + _DARK * np.abs(normals(faces) @ _LIGHT)
         colours = np.column_stack(
             [np.repeat(0.87 * grey[:, None], 3, axis=1), np.full(len(grey), 0.6)]
         )
@@ -182,9 +161,9 @@ def upright(points: Floats) -> Floats:
     return points[..., [0, 2, 1]]
 
 
-def label_axes(ax: Axes, load: Load) -> None:
+def label_axes(ax: Axes, title: str) -> None:
     """Say what axes of a force or a moment over the way of the foot show, once it is drawn."""
     ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     ax.set_xlabel("way of the foot / $L$")
-    ax.set_ylabel(load.title)
+    ax.set_ylabel(title)
     ax.legend(fontsize=style.SMALL, frameon=False, ncols=3)

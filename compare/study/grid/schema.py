@@ -8,10 +8,6 @@ from compare.read.quantities import FileName, Table
 from compare.study.grid.axes import Sample
 from compare.study.grid.study import Record
 
-RUN_TABLES = (
-    "beam", "support", "contact", "profile", "sweep", "mujoco", "motion", "engine", "body", "path",
-    "noise", "reconstruction",
-)  # fmt: skip
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 
@@ -34,8 +30,6 @@ class StudyFile(Table):
     study: StudyTable = StudyTable()
     axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
     sample: Sample | None = None
-    noise: dict[str, Any] = Field(default_factory=dict)
-    reconstruction: dict[str, Any] = Field(default_factory=dict)
     beam: dict[str, Any] = Field(default_factory=dict)
     support: dict[str, Any] = Field(default_factory=dict)
     contact: dict[str, Any] = Field(default_factory=dict)
@@ -46,3 +40,9 @@ class StudyFile(Table):
     engine: dict[str, Any] = Field(default_factory=dict)
     body: dict[str, Any] = Field(default_factory=dict)
     path: dict[str, Any] = Field(default_factory=dict)
+    noise: dict[str, Any] = Field(default_factory=dict)
+    reconstruction: dict[str, Any] = Field(default_factory=dict)
+
+
+RUN_TABLES = (*StudyFile.model_fields,)[3:]
+"""Those of a run."""
