@@ -1,4 +1,21 @@
-"""Case files of a user."""
+"""Case files of a user, and a rig's readings in its own columns and units."""
+
+import pandas as pd
+
+from analytic import Readings
+
+RIG_COLUMNS = tuple(
+    word
+    for column in ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
+    for word in ("--column", column)
+)
+
+
+def as_a_rig(sweep: Readings) -> pd.DataFrame:
+    """A sweep in SI units in millimetres and millinewtons."""
+    names = {"foot_x": "stage", "force_x": "Fx", "force_y": "Fy", "moment_z": "Mz"}
+    return sweep.table[[*names]].rename(columns=names) * [1e3, 1e3, 1e3, 1e6]
+
 
 CASE = """
 name = "small object"

@@ -9,7 +9,7 @@ import pytest
 
 from analytic import SENSED, Readings, named_case, solve_sweep
 from tests.compare.command import vibrissa
-from tests.compare.commands.case_files import CASE, UNITS
+from tests.compare.commands.case_files import CASE, RIG_COLUMNS, UNITS, as_a_rig
 
 
 def test_reconstruction_of_a_rigs_file(tmp_path):
@@ -17,15 +17,9 @@ def test_reconstruction_of_a_rigs_file(tmp_path):
     (tmp_path / "case.toml").write_text(UNITS)
     vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
-    rig = sweep.table[["foot_x"]] * 1e3
-    rig.columns = ["stage"]
-    rig["Fx"], rig["Fy"] = sweep.values("force_x") * 1e3, sweep.values("force_y") * 1e3
-    rig["Mz"] = sweep.values("moment_z") * 1e6
-    rig.to_csv(tmp_path / "rig.csv", index=False)
-    columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
-    words = [word for column in columns for word in ("--column", column)]
+    as_a_rig(sweep).to_csv(tmp_path / "rig.csv", index=False)
     done = vibrissa(
-        "reconstruct", "rig.csv", "--beam", "case.toml", *words, "--out", "out", cwd=tmp_path
+        "reconstruct", "rig.csv", "--beam", "case.toml", *RIG_COLUMNS, "--out", "out", cwd=tmp_path
     )
     assert done.returncode == 0, done.stderr
     points = pd.read_csv(tmp_path / "out" / "points.csv")
@@ -41,27 +35,15 @@ def test_reconstruction_of_a_rigs_file(tmp_path):
         done.refused(said)
 
 
-RIG = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
-RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
-
-
 @pytest.fixture
 def rig(tmp_path) -> Path:
     """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
     (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
     vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
-    rng = np.random.default_rng(1)
-    columns = {"stage": sweep.values("foot_x") * 1e3 + 2.0}
-    for column, name, unit in (
-        ("Fx", "force_x", 1e3),
-        ("Fy", "force_y", 1e3),
-        ("Mz", "moment_z", 1e6),
-    ):
-        values = sweep.values(name) * unit
-        noise = 3e-3 * np.abs(values).max() * rng.standard_normal(len(values))
-        columns[column] = values + noise
-    pd.DataFrame(columns).to_csv(tmp_path / "rig.csv", index=False)
+    table = as_a_rig(sweep)
+    noise = 3e-3 * table.abs().max() * np.random.default_rng(1).standard_normal(table.shape)
+    (table + noise.assign(stage=2.0)).to_csv(tmp_path / "rig.csv", index=False)
     return tmp_path
 
 

@@ -3,13 +3,13 @@
 import json
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic import Beam, Case, Readings, Sweep, circle, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.read.run_folder import read_run
 from tests.compare.command import vibrissa
+from tests.compare.commands.case_files import RIG_COLUMNS, as_a_rig
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,6 @@ def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     [
         ("comparison.json", b"{", "comparison.json"),
         ("comparison.json", b'{"tolerances": {"rms": "x"}}', "comparison.json"),
-        ("comparison.json", b'{"tolerances": [], "tolerance_reasons": {}}', "comparison.json"),
         ("budget.json", b'{"parts": 3}', "budget.json"),
         ("budget.json", b"[" * 100_000, "budget.json"),
         ("mujoco-chain.parquet", None, "(analytic.parquet)"),
@@ -89,22 +88,13 @@ def test_rigs_side_by_side(tmp_path, sweep):
     """Columns, units, decimal commas, rows out of order; the engine's file beside them as it is."""
     sweep.write(tmp_path / "analytic.parquet")
     sweep.write(tmp_path / "engine.csv")
-    rig = pd.DataFrame(
-        {
-            "stage": 1e3 * sweep.values("foot_x"),
-            "Fx": 1e3 * sweep.values("force_x"),
-            "Fy": 1e3 * sweep.values("force_y"),
-            "Mz": 1e6 * sweep.values("moment_z"),
-        }
-    )
+    rig = as_a_rig(sweep)
     rig.to_csv(tmp_path / "one.csv", index=False)
     rig.iloc[::-1].to_csv(tmp_path / "two.txt", sep=";", decimal=",", index=False)
     shuffled = rig.sample(frac=1, random_state=1).reset_index(drop=True)
     shuffled.to_parquet(tmp_path / "three.parquet")
-    columns = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
-    words = [word for column in columns for word in ("--column", column)]
     files = ("engine.csv", "one.csv", "two.txt", "three.parquet")
-    words += ["--direction", "left", "--out", "out"]
+    words = (*RIG_COLUMNS, "--direction", "left", "--out", "out")
     done = vibrissa("compare", "analytic.parquet", *files, *words, cwd=tmp_path)
     assert "three.parquet" in done.stderr or "out of order" in done.stderr
     found = json.loads((tmp_path / "out" / "side-by-side.json").read_text())["comparisons"]

@@ -10,6 +10,7 @@ import pytest
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.keep.reading import read_rows
+from compare.study.keep.store import Store
 
 EVENTS_ONLY = """
 [study]
@@ -38,6 +39,12 @@ def only(plan):
     """The recipe and the only run of a plan."""
     (run,) = plan
     return plan.study.recipe, run
+
+
+def fill(folder: Path, plan: Plan, results, warned: list[str]) -> None:
+    with Store(folder, plan, warned.append) as store:
+        for result in results:
+            store.add(result)
 
 
 def vibrissa(*arguments, cwd, **options) -> subprocess.CompletedProcess:

@@ -117,15 +117,6 @@ def test_a_dry_run_stores_nothing(folder, study):
     assert not (folder / "out").exists()
 
 
-def test_bad_input_in_one_line(folder, study):
-    (folder / "grid.toml").write_text(EVENTS_ONLY.replace("beam.radius", "beam.radis"))
-    done = study()
-    assert done.returncode == 2
-    (line,) = done.stderr.splitlines()
-    assert "line 7" in line
-    assert not (folder / "out").exists()
-
-
 @pytest.mark.slow
 def test_a_simulated_study_and_its_report(folder, study, command):
     (folder / "grid.toml").write_text(SIMULATED)

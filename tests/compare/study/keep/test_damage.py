@@ -13,7 +13,7 @@ from compare.study.keep.database import NAME
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.keep.store import PLAN_FILE, TABLE_FILE, Store
 from compare.study.work.perform import perform
-from tests.compare.study.studies import EVENTS_ONLY, planned
+from tests.compare.study.studies import EVENTS_ONLY, fill, planned
 
 
 def flipped(content, chance):
@@ -49,12 +49,6 @@ def plan(tmp_path_factory):
 def stored(plan):
     recipe = plan.study.recipe
     return {run.id: perform(recipe, run) for run in plan}
-
-
-def fill(folder, plan, results, warned):
-    with Store(folder, plan, warned.append) as store:
-        for result in results:
-            store.add(result)
 
 
 @pytest.fixture(scope="module")
@@ -149,12 +143,6 @@ def test_what_others_wrote_is_no_result(plan, stored, complete, tmp_path, change
     missing, warned = check_recovery(folder, plan, stored)
     assert warned
     assert bool(missing) == ("ADD COLUMN" not in change)
-
-
-def test_a_folder_in_the_place_of_the_file(plan, tmp_path):
-    (tmp_path / NAME).mkdir()
-    with pytest.raises(InputError, match="--out"):
-        Store(tmp_path, plan, print)
 
 
 @pytest.mark.parametrize(

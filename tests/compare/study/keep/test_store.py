@@ -16,7 +16,7 @@ from compare.study.keep.database import NAME, Database
 from compare.study.keep.reading import read_rows
 from compare.study.keep.store import TABLE_FILE, Store
 from compare.study.work.perform import Result, perform
-from tests.compare.study.studies import EVENTS_ONLY
+from tests.compare.study.studies import EVENTS_ONLY, fill
 
 
 @pytest.fixture
@@ -33,12 +33,6 @@ def plan(plan_of):
 def stored(plan):
     recipe = plan.study.recipe
     return [perform(recipe, run) for run, _ in zip(plan, range(6), strict=False)]
-
-
-def fill(folder, plan, results, warned):
-    with Store(folder, plan, warned.append) as store:
-        for result in results:
-            store.add(result)
 
 
 def test_what_is_stored_is_read(tmp_path, plan, stored, warned):
@@ -105,23 +99,6 @@ def test_two_processes_write_at_once(tmp_path, plan, stored, warned):
         one.add(stored[2])
     assert len(pd.read_parquet(tmp_path / TABLE_FILE)) == 3
     assert not warned
-
-
-def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, warned):
-    fill(tmp_path, plan, stored[:1], warned)
-    wider = plan_of(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
-    recipe = wider.study.recipe
-    fill(tmp_path, wider, [perform(recipe, next(iter(wider)))], warned)
-    frame = pd.read_parquet(tmp_path / TABLE_FILE)
-    # The same problem, though it is one of a larger study: one run.
-    assert len(frame) == 1
-    assert frame["profile.c"].tolist() == [-0.8]
-
-
-def test_a_file_where_the_folder_should_be(tmp_path, plan, warned):
-    (tmp_path / "out").write_text("")
-    with pytest.raises(InputError, match="--out"):
-        Store(tmp_path / "out", plan, warned.append)
 
 
 def test_a_file_that_another_leader_is_just_making_is_not_damaged(tmp_path, plan, warned):
