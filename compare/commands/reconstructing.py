@@ -23,8 +23,8 @@ from compare.commands.comparing import RigFiles as RigFiles
 from compare.commands.methods import compare_methods as compare_methods
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
-from compare.commands.space import find_body
 from compare.commands.sweep_lines import note_rows, print_reconstruction
+from compare.commands.sweeping import find_body
 from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts

@@ -21,8 +21,7 @@ from analytic import (
     solve_sweep,
 )
 from compare.show import style
-from compare.show.figures.fold import with_fold
-from compare.show.figures.over_foot import LINE, foot, shade_phases
+from compare.show.figures.over_foot import LINE, foot, shade_phases, with_fold
 from mujoco_models import simulate_sweep
 
 _FORCE = style.GREEN

@@ -13,7 +13,6 @@ from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
 from compare.read.passes import Pass
 from compare.show import style
-from compare.show.figures.fold import with_fold
 from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
@@ -28,6 +27,7 @@ from compare.show.figures.over_foot import (
     shade_reference,
     stacked,
     unit,
+    with_fold,
 )
 from compare.validate.validation import Validation
 

@@ -9,13 +9,14 @@ from analytic import NAMED_TABLES, InputError
 from compare.read.complaints import shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
-from compare.study.grid.schema import RUN_TABLES, StudyFile
 from compare.study.grid.study import (
     BEAM,
     COMPONENTS_OF,
     MESHES,
+    RUN_TABLES,
     PlanarRun,
     SpatialRun,
+    StudyFile,
     checked_run,
     flatten,
     replaced,

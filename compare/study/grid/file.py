@@ -15,8 +15,7 @@ from compare.read.complaints import complaint, shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Value
 from compare.study.grid.base import Base
-from compare.study.grid.schema import StudyFile
-from compare.study.grid.study import BEAM, COMPONENTS_OF, RECORDS, Study
+from compare.study.grid.study import BEAM, COMPONENTS_OF, RECORDS, Study, StudyFile
 
 
 def shipped_studies() -> dict[str, Path]:

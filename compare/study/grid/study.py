@@ -1,14 +1,16 @@
-"""What a study is, once its file has been checked."""
+"""What a study is: the tables of its file, and what they are once checked."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
-from compare.read.quantities import validated
+from pydantic import Field
+
+from compare.read.quantities import FileName, Table, validated
 from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import KeyPlace
-from compare.study.grid.axes import Axis
+from compare.study.grid.axes import Axis, Sample
 from compare.study.grid.instrument import Estimator, SensorNoise
 
 Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
@@ -18,6 +20,8 @@ ENGINE = "engine.name"
 MESHES = ("profile.file", "body.file")
 COMPONENTS_OF = ("x", "y", "z")
 """Of a place or direction in space: ``path.tangent.x`` is a key of its own."""
+# A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
+_LONGEST = 86_400.0
 
 
 @dataclass(frozen=True)
@@ -128,3 +132,39 @@ def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:
     found = list(values)
     found[COMPONENTS_OF.index(component)] = value
     return found
+
+
+class StudyTable(Table):
+    """The table ``[study]``."""
+
+    name: FileName | None = None
+    case: str | None = None
+    beams: list[str] | None = None
+    record: Annotated[list[Record], Field(min_length=1)] | None = None
+    keep_readings: bool = False
+    timeout: Annotated[float, Field(gt=0, le=_LONGEST)] = 600.0
+    zip: list[list[str]] = Field(default_factory=list)
+
+
+class StudyFile(Table):
+    """A whole study file; those of a run are checked as those of a case file are."""
+
+    study: StudyTable = StudyTable()
+    axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
+    sample: Sample | None = None
+    beam: dict[str, Any] = Field(default_factory=dict)
+    support: dict[str, Any] = Field(default_factory=dict)
+    contact: dict[str, Any] = Field(default_factory=dict)
+    profile: dict[str, Any] = Field(default_factory=dict)
+    sweep: dict[str, Any] = Field(default_factory=dict)
+    mujoco: dict[str, Any] = Field(default_factory=dict)
+    motion: dict[str, Any] = Field(default_factory=dict)
+    engine: dict[str, Any] = Field(default_factory=dict)
+    body: dict[str, Any] = Field(default_factory=dict)
+    path: dict[str, Any] = Field(default_factory=dict)
+    noise: dict[str, Any] = Field(default_factory=dict)
+    reconstruction: dict[str, Any] = Field(default_factory=dict)
+
+
+RUN_TABLES = (*StudyFile.model_fields,)[3:]
+"""Those of a run."""

@@ -24,8 +24,7 @@ from compare.show.page import png
 from compare.study.keep.database import Warn
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.show import pictures, tables
-from compare.study.show.questions import Question, asked
-from compare.study.show.results import StudyResults
+from compare.study.show.results import Question, StudyResults, asked
 from compare.study.show.sentences import headline, varied
 from compare.study.show.slices import curves, repeated
 

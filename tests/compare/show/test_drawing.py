@@ -12,8 +12,7 @@ from matplotlib.cbook import is_math_text
 from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
 from compare import compare
 from compare.sense.phases import classify
-from compare.show.figures.fold import with_fold
-from compare.show.figures.over_foot import foot
+from compare.show.figures.over_foot import foot, with_fold
 from compare.show.report import write_report
 from compare.show.style import label
 from tests.compare.show import sweeps

@@ -9,8 +9,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, InputError
 from compare.study.keep.database import NAME, Database
-from compare.study.show.questions import asked
-from compare.study.show.results import WORST, StudyResults
+from compare.study.show.results import WORST, StudyResults, asked
 from compare.study.show.sentences import headline, varied
 from compare.study.show.slices import lines
 from compare.study.show.study_report import write_report
