@@ -42,7 +42,8 @@ def rig(tmp_path) -> Path:
     vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
     table = as_a_rig(sweep)
-    noise = 3e-3 * table.abs().max() * np.random.default_rng(1).standard_normal(table.shape)
+    chance = np.random.default_rng(1).standard_normal(table.shape)
+    noise = pd.DataFrame(3e-3 * chance, columns=table.columns) * table.abs().max()
     (table + noise.assign(stage=2.0)).to_csv(tmp_path / "rig.csv", index=False)
     return tmp_path
 
