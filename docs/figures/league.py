@@ -11,13 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
-from compare.show.markdown import markdown
 
 from analytic import CLAMP_READINGS, named_case, solve_sweep
 from analytic.problem.files import write_whole
 from compare import compare
 from compare.show.document import Block, Document, Section, Table, Text, Verdict
 from compare.show.numbers import short
+from docs.figures.markdown import markdown
 from engines import list_engines
 from engines.apart import sweep_apart
 from mujoco_models import Settings
