@@ -21,6 +21,7 @@ from mujoco_models.inspect.rod import Rod
 _FIRST = 1.8751040687119611**2  # omega L^2 sqrt(m/EI) of the first vibration of a cantilever
 _AT_REST = 1e-8  # L in 1/omega
 _SHORTEST, _LONGEST = 3.0, 600.0  # 1/omega to come to rest in
+_SHORTEST_STEP = 1 / 20_000  # of the first period: a rod is measured by steps, two million at most
 _FADES = 30.0  # time constants of a weld, in which all of a heavy foot's motion is gone
 _PULLED = 60.0  # 1/omega; what is not at rest by then, stretches too far anyway
 _SMALL = 1e-2  # EI/L^2 and EI/L; what bends by so little does so linearly, to 1e-4
@@ -53,6 +54,11 @@ class HeldRod(HeldModel):
         self._rigidity = self._nominal_rigidity()
         mass = self._masses.sum() / self._length
         self._omega = _FIRST / self._length**2 * math.sqrt(self._rigidity / mass)
+        shortest = _SHORTEST_STEP * 2 * math.pi / self._omega
+        if model.opt.timestep < shortest:
+            allowed = f"at least {shortest:.2g}, {_SHORTEST_STEP:g} of the rod's first period"
+            remedy = "a rod is measured by its own steps: take a longer one"
+            raise InputError("timestep", f"{model.opt.timestep:g}", allowed, remedy)
         # Critical for the first vibration; all others fade as fast.
         of_vertex = model.body_mass[model.dof_bodyid[self.dofs]]
         self.model.dof_damping[self.dofs] += 2 * self._omega * of_vertex
@@ -108,7 +114,7 @@ class HeldRod(HeldModel):
     def _settles(self, longest: float) -> bool:
         """Whether it comes to rest within a time [1/omega]."""
         step, slow = self.model.opt.timestep, _AT_REST * self._length * self._omega
-        shortest = max(_SHORTEST / self._omega, self._shortest)
+        shortest = max(_SHORTEST / self._omega, min(self._shortest, _LONGEST / self._omega))
         self._apply()
         turns = self._torque.any()
         for i in range(math.ceil(max(longest / self._omega, 2 * shortest) / step)):

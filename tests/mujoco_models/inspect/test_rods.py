@@ -108,6 +108,14 @@ def test_what_is_no_vibrissa_is_one_line(tmp_path, rod, said):
     assert "\n" not in str(caught.value)
 
 
+def test_steps_too_short_to_be_measured_by_are_refused_at_once(tmp_path):
+    """It would take 10^10 of them to rest."""
+    path = tmp_path / "rod.xml"
+    path.write_text(Rod().text.replace('timestep="0.0005"', 'timestep="5e-10"'))
+    with pytest.raises(InputError, match=r"timestep = 5e-10: must be at least 1.*e-06, "):
+        inspect_model(path)
+
+
 @pytest.mark.slow
 def test_nothing_is_written_beside_it(tmp_path, monkeypatch):
     """MuJoCo's warnings go to no file: its solver does not get to a tolerance of 0, and warns."""
