@@ -13,8 +13,10 @@ from .from_clamp.shape import deflected_shapes as deflected_shapes
 from .from_clamp.sideways import sideways_stiffness as sideways_stiffness
 from .problem.beam import Beam as Beam
 from .problem.case import Case as Case
-from .problem.case import Direction as Direction
-from .problem.case import Sweep as Sweep
+from .problem.clamp_path import ClampPath as ClampPath
+from .problem.clamp_path import Direction as Direction
+from .problem.clamp_path import Sweep as Sweep
+from .problem.clamp_path import Whisk as Whisk
 from .problem.columns import CLAMP_READINGS as CLAMP_READINGS
 from .problem.columns import COLUMNS as COLUMNS
 from .problem.columns import PHASES as PHASES
@@ -35,6 +37,7 @@ from .problem.named import CASE_NAMES as CASE_NAMES
 from .problem.named import NAMED_PROFILES as NAMED_PROFILES
 from .problem.named import NAMED_TABLES as NAMED_TABLES
 from .problem.named import REAL_CASE_NAMES as REAL_CASE_NAMES
+from .problem.named import WHISK_CASE_NAMES as WHISK_CASE_NAMES
 from .problem.named import named_case as named_case
 from .problem.readings import Readings as Readings
 from .solver.contact import solve_contact as solve_contact

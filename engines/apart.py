@@ -77,6 +77,7 @@ def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIME
 def _sweep(name: str, case: Case, settings: Settings) -> Readings | str:
     """In the other process: readings, or a line that says why there are none."""
     try:
+        case.require_sweep(f"the engine {name}")
         return checked(find_engine(name).sweep(case, settings), case)
     except InputError as error:
         return str(error)

@@ -28,6 +28,7 @@ def show(case: Case, settings: Settings) -> None:
 
     A sweep to the right is simulated as its mirror image, so it is looked at from behind.
     """
+    case.require_sweep("the viewer")
     _ask_for_display()
     to_right = case.sweep.direction == "right"
     leftward = case.mirrored() if to_right else case

@@ -35,10 +35,11 @@ def certify(readings: Readings) -> pd.DataFrame:
         is free, NaN where the readings have no contact to check.
     """
     held = support_of(readings.provenance)
-    clamp_stiffness, friction, clamp_angle = held
-    beam, foot_x = readings.beam, readings.values("foot_x")
-    plain = is_plain(beam, held)
-    if readings.bends_left if plain else foot_x[-1] > foot_x[0]:
+    clamp_stiffness, friction, _ = held
+    beam = readings.beam
+    turns = "clamp_angle" in readings.table
+    plain = is_plain(beam, held) and not turns
+    if readings.bends_left if plain else readings.runs_right:
         return certify(readings.mirrored())
     length = beam.length
     force_x = readings.values("force_x") / beam.force_unit
@@ -47,7 +48,7 @@ def certify(readings: Readings) -> pd.DataFrame:
     alpha = readings.values("contact_angle")
     radius = beam.radius_at(readings.values("contact_arc_length"))
     x = (readings.values("contact_x") + radius * np.sin(alpha) - readings.values("foot_x")) / length
-    y = (readings.values("contact_y") - radius * np.cos(alpha)) / length
+    y = (readings.values("contact_y") - radius * np.cos(alpha) - readings.foot_y) / length
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
     along = alpha + beam.unloaded.lean
@@ -70,7 +71,7 @@ def certify(readings: Readings) -> pd.DataFrame:
             moment[touching],
             arc_length[touching],
             compliance=compliance,
-            clamp_angle=clamp_angle,
+            clamp_angle=readings.clamp_angle[touching],
             natural=lambda s: length * beam.curvature_at(length * s),
             breaks=beam.breaks / length,
             flexibility=lambda s: beam.base_rigidity / beam.rigidity_at(length * s),

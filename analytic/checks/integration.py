@@ -35,7 +35,7 @@ def integrate_span(
     length: Floats,
     tolerance: float = 1e-13,
     compliance: float = 0.0,
-    clamp_angle: float = 0.0,
+    clamp_angle: float | Floats = 0.0,
     natural: Quantity = _none,
     flexibility: Quantity = np.ones_like,
     breaks: Sequence[float] | Floats = (),

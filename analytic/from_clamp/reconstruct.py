@@ -1,6 +1,7 @@
 """The object from the clamp readings alone (paper, section 5)."""
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,7 @@ from analytic.from_clamp.contact import (
 from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import Judgement, judge_phases
+from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED, units
@@ -86,6 +88,8 @@ def reconstruct(
     if method != "elastica":
         readings.require_plain(f"the method {method}")
         return reconstruct_earlier(readings, method, noise)
+    if readings.running != "foot_x":
+        return reconstruct_turning(readings, noise, partial(reconstruct, seed=seed))
     judged = judge_phases(readings, noise)
     found = contact_table(readings, judged)
     if noise is not None:

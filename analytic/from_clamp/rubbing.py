@@ -84,6 +84,7 @@ def estimate_friction(
         If fewer than five stations are of Phase B, or the noise is no such mapping.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
+    readings.require_sweep("an estimate of the friction")
     spread = _spread(readings, noise)
     coefficient, found = 0.0, FrictionFound(0.0, np.inf, 0)
     for number in range(_ROUNDS):

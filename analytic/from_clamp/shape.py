@@ -4,6 +4,7 @@ import numpy as np
 
 from analytic.checks.integration import march
 from analytic.from_clamp.contact import SweptVibrissa, located
+from analytic.from_clamp.turning import shapes_turning
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
@@ -32,6 +33,8 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         Coordinates [length]; shape (stations, 81) if the vibrissa is curved at rest.
 
     """
+    if readings.running != "foot_x":
+        return shapes_turning(readings, deflected_shapes)
     beam = readings.beam
     held = SweptVibrissa.of(readings)
     natural = held.way * held.vibrissa.natural_curvature

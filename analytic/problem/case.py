@@ -5,18 +5,21 @@ import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, cast
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.clamp_path import ClampWay, Direction, Sweep
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
-from analytic.problem.numbers import finite, whole, within
+from analytic.problem.first_touch import first_on_way
+from analytic.problem.numbers import within
+from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
-from analytic.problem.rest import first_touch
+from analytic.problem.rest import FirstTouch, first_touch
 from analytic.problem.support import (
     Support,
     check_support,
@@ -26,50 +29,8 @@ from analytic.problem.support import (
 )
 from analytic.problem.unloaded import Unloaded
 
-Direction: TypeAlias = Literal["left", "right"]
-
 _MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
-_MOST_STATIONS = 1_000_000
 _SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """Stations of the foot, equally spaced from `start` to `stop`.
-
-    Parameters
-    ----------
-    stations : int
-        Number of stations, from 2 to 1,000,000.
-    start, stop : float, optional
-        First and last foot position [length]. By default from just before the first contact to
-        just past the position from which the contour is out of reach: geometry only, so that no
-        engine learns the answer from it.
-    direction : str
-        Where the foot moves to: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
-        clear of the object and straight either way, so the two are different sweeps: what one
-        touches first, the other lets go of last and elsewhere.
-
-    Raises
-    ------
-    InputError
-        If a number or the direction cannot be.
-    """
-
-    stations: int = 200
-    start: float | None = None
-    stop: float | None = None
-    direction: Direction = "left"
-
-    def __post_init__(self) -> None:
-        stations = whole("sweep.stations", self.stations, 2, _MOST_STATIONS)
-        object.__setattr__(self, "stations", stations)
-        for name in ("start", "stop"):
-            if getattr(self, name) is not None:
-                finite(f"sweep.{name}", getattr(self, name))
-        if self.direction not in get_args(Direction):
-            remedy = "it is where the foot moves to"
-            raise InputError("sweep.direction", repr(self.direction), "left or right", remedy)
 
 
 @dataclass(frozen=True)
@@ -82,8 +43,8 @@ class Case:
         The vibrissa.
     profile : Contour
         The body's contour, in the unit of length of `beam`.
-    sweep : Sweep
-        The foot positions.
+    sweep : Sweep, Whisk or ClampPath
+        The foot positions, or the way of the clamp.
     name : str
         What files and reports call the case.
     clamp_stiffness : float
@@ -103,7 +64,7 @@ class Case:
 
     beam: Beam = field(default_factory=Beam)
     profile: Contour = field(default_factory=lambda: catenary(0.5, -0.8))
-    sweep: Sweep = field(default_factory=Sweep)
+    sweep: Any = field(default_factory=Sweep)
     name: str = "case"
     clamp_stiffness: float = field(default=math.inf, kw_only=True)
     friction: float = field(default=0.0, kw_only=True)
@@ -113,13 +74,16 @@ class Case:
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
             ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
-            ("sweep", Sweep, "as Sweep(stations=200)"),
+            ("sweep", ClampWay, "as Sweep(stations=200), or Whisk(start=-1.2, stop=0.8)"),
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
         check_support(self.support, self.beam)
         for name in Support._fields:
             object.__setattr__(self, name, float(getattr(self, name)))
+        if not isinstance(self.sweep, Sweep):
+            self._check_way()
+            return
         touch = self._first_contact * self.beam.length
         farthest = 2 * FARTHEST * self.beam.length
         for name in ("start", "stop"):  # by default they are in order, and the stop is not needed
@@ -152,18 +116,93 @@ class Case:
         """The contour that the centreline feels, a cone's at its tip; in units of the length."""
         return self.profile.scaled(1 / self.beam.length).offset(self.beam.unloaded.tip_radius)
 
+    def _check_way(self) -> None:
+        """A way on which the clamp turns starts clear, and has all angles in it."""
+        if self.clamp_angle:
+            remedy = "add it to the angles of the way"
+            raise InputError("clamp_angle", self.clamp_angle, "0 where the clamp turns", remedy)
+        if self.direction == "left":
+            _ = self.touch
+        else:
+            self.mirrored()
+
+    @property
+    def direction(self) -> Direction:
+        """Where the foot moves to, or the clamp turns to."""
+        return cast("Direction", self.sweep.direction)
+
+    @cached_property
+    def poses(self) -> Poses:
+        """The way of the clamp, of a case to the left."""
+        if isinstance(self.sweep, Sweep):
+            return along_x(self.clamp_angle)
+        return cast("Poses", self.sweep.poses(self.beam.length))
+
+    @cached_property
+    def way(self) -> Floats:
+        """Parameters of that way at the stations, falling."""
+        if isinstance(self.sweep, Sweep):
+            return self.foot_x / self.beam.length
+        along = self.running_values
+        return -along / self.beam.length if self.sweep.running == "travel" else -along
+
+    def running_at(self, p: float) -> float:
+        """What the sweep runs over, at a parameter of the way to the left that solves it."""
+        if self.sweep.running == "travel":
+            return -p * self.beam.length
+        turned = p if self.direction == "left" else -p
+        return turned * self.beam.length if isinstance(self.sweep, Sweep) else -turned
+
+    @cached_property
+    def running_values(self) -> Floats:
+        """Values of what the sweep runs over, shape (stations,)."""
+        if isinstance(self.sweep, Sweep):
+            return self.foot_x
+        return cast("Floats", self.sweep.stations_along(self.beam.length))
+
+    @cached_property
+    def stations(self) -> Pose:
+        """The clamp at each station [length, rad]."""
+        leftward = self if self.direction == "left" else self.mirrored()
+        x, y, angle = leftward.poses.at(leftward.way)
+        sign = 1.0 if self.direction == "left" else -1.0
+        length = self.beam.length
+        return Pose(sign * length * x, length * y, sign * angle)
+
+    @property
+    def way_columns(self) -> dict[str, Floats]:
+        """What readings of such a way have beside a sweep's, shape (stations,)."""
+        if isinstance(self.sweep, Sweep):
+            return {}
+        _, foot_y, angle = self.stations
+        found = {"clamp_angle": angle}
+        if self.sweep.running == "travel":
+            found |= {"foot_y": foot_y, "travel": self.running_values}
+        return found
+
+    @cached_property
+    def touch(self) -> FirstTouch | None:
+        """The first contact, unloaded, of a case to the left; None if its way has none."""
+        if isinstance(self.sweep, Sweep):
+            return first_touch(self.centreline, self.reach, self.unloaded)
+        ends = float(self.way[0]), float(self.way[-1])
+        return first_on_way(self.centreline, self.reach, self.unloaded, self.poses, ends)
+
     @cached_property
     def reach(self) -> tuple[float, float]:
         """Contour parameters of the leftmost and the rightmost point within reach.
 
         A sweep to the left touches the right one first, one to the right the left one.
         """
-        return contact_range(self.centreline)
+        if isinstance(self.sweep, Sweep):
+            return contact_range(self.centreline)
+        highest = float(self.poses.at(self.way).foot_y.max())
+        return contact_range(self.centreline.raised(-highest) if highest else self.centreline)
 
     @property
     def is_plain(self) -> bool:
         """Whether the vibrissa is the paper's: straight, uniform, held upright, not rubbed."""
-        return is_plain(self.beam, self.support)
+        return isinstance(self.sweep, Sweep) and is_plain(self.beam, self.support)
 
     def require_plain(self, who: str) -> None:
         """Refuse a case that is not the paper's vibrissa.
@@ -179,9 +218,10 @@ class Case:
             If the vibrissa is curved at rest or not uniform, its clamp turns or leans, or it rubs.
         """
         require_plain(who, self.beam, self.support)
+        self.require_upright(who)
 
     def require_upright(self, who: str) -> None:
-        """Refuse a case whose clamp leans.
+        """Refuse a case whose clamp leans or turns, or leaves its line.
 
         Parameters
         ----------
@@ -193,9 +233,53 @@ class Case:
         InputError
             If it leans.
         """
+        self.require_sweep(who)
         if self.clamp_angle:
             allowed = f"0: {who} cannot take it into account"
             raise InputError("clamp_angle", self.clamp_angle, allowed, "leave it out")
+
+    def require_sweep(self, who: str) -> None:
+        """Refuse a case whose clamp turns or leaves its line on its way.
+
+        Parameters
+        ----------
+        who : str
+            Who cannot take that into account.
+
+        Raises
+        ------
+        InputError
+            If it does.
+        """
+        if not isinstance(self.sweep, Sweep):
+            what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
+            allowed = f"a Sweep, with the foot along its line: {who} can do no other"
+            raise InputError("way of the clamp", what, allowed, "solve it in closed form (exact)")
+
+    def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
+        """The same sweep between other positions of the foot.
+
+        Parameters
+        ----------
+        start, stop : float
+            [length].
+        stations : int, optional
+            As many as before if not given.
+
+        Returns
+        -------
+        Case
+            With all else as it is.
+
+        Raises
+        ------
+        InputError
+            If the clamp turns or leaves its line on its way.
+        """
+        self.require_sweep("a sweep between other positions of the foot")
+        number = self.sweep.stations if stations is None else stations
+        ends = replace(self.sweep, stations=number, start=start, stop=stop)
+        return replace(self, sweep=ends)
 
     @property
     def radius(self) -> float:
@@ -205,6 +289,8 @@ class Case:
     @cached_property
     def foot_x(self) -> Floats:
         """Foot positions, shape (stations,), in sweep order [length]."""
+        if not isinstance(self.sweep, Sweep):
+            return self.stations.foot_x
         return np.linspace(self._start, self._stop, self.sweep.stations)
 
     @cached_property
@@ -214,7 +300,11 @@ class Case:
         xi, eta = self.centreline.place(np.linspace(left, right, 67))
         beam = self.beam
         sizes = beam.length, beam.base_rigidity, beam.radius
-        numbers = np.array([*sizes, self._start, self._stop, self.sweep.stations, *xi, *eta])
+        if isinstance(self.sweep, Sweep):
+            ends = [self._start, self._stop, self.sweep.stations]
+        else:
+            ends = [value for values in self.stations for value in values.tolist()]
+        numbers = np.array([*sizes, *ends, *xi, *eta])
         if not self.is_plain:
             base_curvature = float(beam.curvature_at(0.0))
             beyond = base_curvature, self.clamp_stiffness, self.friction
@@ -275,8 +365,12 @@ class Case:
         Case
             Its foot moves the other way, from and to the mirrored positions.
         """
-        opposite: Direction = "left" if self.sweep.direction == "right" else "right"
-        sweep = Sweep(self.sweep.stations, -self._start, -self._stop, opposite)
+        sweep = self.sweep
+        if isinstance(sweep, Sweep):
+            opposite: Direction = "left" if self.direction == "right" else "right"
+            sweep = Sweep(sweep.stations, -self._start, -self._stop, opposite)
+        else:
+            sweep = sweep.mirrored()
         return replace(
             self,
             beam=self.beam.mirrored(),
@@ -296,8 +390,8 @@ class Case:
             if self._way > 0:
                 mirrored = self.centreline.mirrored()
                 rest = self.support.mirrored().unloaded(self.beam.mirrored())
-                return -first_touch(mirrored, contact_range(mirrored), rest).foot_x
-            return first_touch(self.centreline, self.reach, self.unloaded).foot_x
+                return -first_touch(mirrored, contact_range(mirrored), rest).p
+            return first_touch(self.centreline, self.reach, self.unloaded).p
         left, right = self.reach
         first = left if self._way > 0 else right
         return float(self.centreline.place(np.array([first]))[0][0])
@@ -305,13 +399,13 @@ class Case:
     @cached_property
     def _start(self) -> float:
         if self.sweep.start is not None:
-            return self.sweep.start
+            return cast("float", self.sweep.start)
         return (self._first_contact - self._way * _MARGIN) * self.beam.length
 
     @cached_property
     def _stop(self) -> float:
         if self.sweep.stop is not None:
-            return self.sweep.stop
+            return cast("float", self.sweep.stop)
         if self._way > 0:
             mirrored = self.centreline.mirrored()
             return (_MARGIN - out_of_reach(mirrored, *contact_range(mirrored))) * self.beam.length

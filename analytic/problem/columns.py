@@ -43,7 +43,7 @@ SCHEMA = {
     **dict.fromkeys(("force_x", "force_x_raw"), Column("force", odd=True)),
     **dict.fromkeys(("force_y", "force_y_raw"), Column("force")),
     **dict.fromkeys(("moment_z", "moment_z_raw"), Column("moment", odd=True)),
-    "contact_angle": Column("angle", odd=True),
+    **dict.fromkeys(("contact_angle", "clamp_angle"), Column("angle", odd=True)),
     **dict.fromkeys(("contact_arc_length", "contact_y"), Column("length")),
     **dict.fromkeys(("penetration", "out_of_plane"), Column("length")),
     "residual": Column("moment"),

@@ -18,9 +18,10 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
 
 
 def leftward(case: Case) -> Case:
-    """A case whose foot moves to the left: itself, or its mirror image."""
+    """A case whose foot moves to the left along its line: itself, or its mirror image."""
     require("case", case, Case, "named_case('catenary') makes one")
-    return case if case.sweep.direction == "left" else case.mirrored()
+    case.require_sweep("a simulation")
+    return case if case.direction == "left" else case.mirrored()
 
 
 def keep_facing(case: Case, keep: Callable[[Readings], None]) -> Callable[[Readings], None]:
@@ -30,7 +31,7 @@ def keep_facing(case: Case, keep: Callable[[Readings], None]) -> Callable[[Readi
 
 def facing(case: Case, found: Readings) -> Readings:
     """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
-    if case.sweep.direction == "left":
+    if case.direction == "left":
         return found
     mirrored = found.mirrored()
     return replace(mirrored, provenance={**mirrored.provenance, **case.provenance()})

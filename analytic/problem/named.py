@@ -7,6 +7,7 @@ from typing import Any
 
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Sweep, Whisk
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.kinds import CONTOURS
 from analytic.problem.errors import InputError
@@ -48,11 +49,25 @@ NAMED_TABLES: Mapping[str, Mapping[str, Mapping[str, Any]]] = MappingProxyType(
             "beam": {"radius": 0.003, "tip_radius": 0.0003, "natural_curvature": -0.4},
             "contact": {"friction": 0.48},
         },
+        # The foot stands and the clamp turns, from clear of the object to past its snap-off.
+        "whisk-catenary": {
+            "profile": _CATENARY,
+            "whisk": {"foot_x": 0.6, "start": -1.1, "stop": 1.75},
+        },
+        "whisk-circle": {
+            "profile": {"kind": "circle", "radius": 1.0, "lowest": (0.0, 0.4)},
+            "whisk": {"foot_x": 0.4, "start": -0.55, "stop": 1.95},
+        },
     }
 )
 """All named cases, as the tables of their case files."""
 
-REAL_CASE_NAMES = tuple(name for name in NAMED_TABLES if name not in CASE_NAMES)
+WHISK_CASE_NAMES = tuple(name for name, tables in NAMED_TABLES.items() if "whisk" in tables)
+"""The cases of a foot that stands while the clamp turns."""
+
+REAL_CASE_NAMES = tuple(
+    name for name in NAMED_TABLES if name not in (*CASE_NAMES, *WHISK_CASE_NAMES)
+)
 """The cases of a vibrissa that is curved at rest, on an elastic clamp, or rubs."""
 
 
@@ -68,7 +83,7 @@ def named_case(name: str) -> Case:
     Parameters
     ----------
     name : str
-        One of `CASE_NAMES` or `REAL_CASE_NAMES`.
+        One of `CASE_NAMES`, `REAL_CASE_NAMES` or `WHISK_CASE_NAMES`.
 
     Returns
     -------
@@ -87,6 +102,7 @@ def named_case(name: str) -> Case:
     return Case(
         Beam(**tables.get("beam", {})),
         named_contour(name),
+        Whisk(**tables["whisk"]) if "whisk" in tables else Sweep(),
         name=name,
         clamp_stiffness=tables.get("support", {}).get("rotational_stiffness", math.inf),
         clamp_angle=tables.get("support", {}).get("angle", 0.0),

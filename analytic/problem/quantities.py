@@ -69,7 +69,7 @@ def _softer(case: Case, by: float) -> Case:
 
 def _farther(case: Case, by: float) -> Case:
     start, stop = (float(x) + by for x in case.foot_x[[0, -1]])
-    return replace(case, sweep=replace(case.sweep, start=start, stop=stop))
+    return case.between(start, stop)
 
 
 def _length(case: Case) -> float:

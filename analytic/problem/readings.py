@@ -179,6 +179,48 @@ class Readings(SweepTable):
         """The clamp and the friction, as the provenance has them."""
         return support_of(self.provenance)
 
+    @property
+    def clamp_angle(self) -> Floats:
+        """By which the clamp leans at each station, shape (stations,) [rad]."""
+        if "clamp_angle" in self.table:
+            return self.values("clamp_angle")
+        return np.full(len(self.table), self.support.clamp_angle)
+
+    @property
+    def foot_y(self) -> Floats:
+        """Height of the foot at each station, shape (stations,) [length]."""
+        return self.values("foot_y") if "foot_y" in self.table else np.zeros(len(self.table))
+
+    @property
+    def running(self) -> str:
+        """The column over which the sweep runs."""
+        if "travel" in self.table:
+            return "travel"
+        return "clamp_angle" if "clamp_angle" in self.table else "foot_x"
+
+    @property
+    def runs_right(self) -> bool:
+        """Whether the foot moves, or if it comes back the clamp turns, to the right."""
+        x, angle = self.values("foot_x"), self.clamp_angle
+        return bool((x[-1] - x[0] or angle[0] - angle[-1]) > 0)
+
+    def require_sweep(self, who: str) -> None:
+        """Refuse readings of a clamp that turns, or leaves its line, on its way.
+
+        Parameters
+        ----------
+        who : str
+            Who cannot take that into account.
+
+        Raises
+        ------
+        InputError
+            If it does.
+        """
+        if self.running != "foot_x":
+            allowed = f"a foot along its line in a clamp that keeps its angle, for {who}"
+            raise InputError(f"readings over {self.running}", self.source, allowed)
+
     def with_friction(self, coefficient: float) -> "Readings":
         """The same readings, taken to be of a vibrissa that rubs so much.
 
@@ -216,6 +258,7 @@ class Readings(SweepTable):
             or the object rubs.
         """
         require_plain(who, self.beam, self.support)
+        self.require_sweep(who)
 
     def mirrored(self) -> "Readings":
         """The readings in a mirror, x to -x.
@@ -230,7 +273,8 @@ class Readings(SweepTable):
         provenance = dict(self.provenance)
         if "events" in provenance:
             events = provenance["events"]
-            provenance["events"] = {n: None if x is None else -x for n, x in events.items()}
+            way = 1 if self.running == "travel" else -1
+            provenance["events"] = {n: None if x is None else way * x for n, x in events.items()}
         if "support" in provenance:
             provenance |= support_record(self.support.mirrored())
         if "contour" in provenance:

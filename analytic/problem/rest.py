@@ -20,7 +20,7 @@ class FirstTouch(NamedTuple):
 
     t: float  # contour parameter
     excess: float  # phi1 - alpha >= 0 at the tip, less a cone's lean; s1 - 1 < 0 elsewhere
-    foot_x: float
+    p: float  # parameter of the clamp's way, that of a sweep the foot position
 
 
 def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) -> FirstTouch:

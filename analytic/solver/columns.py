@@ -38,7 +38,7 @@ class Units(NamedTuple):
         return Units(*(np.broadcast_to(unit, chosen.shape)[chosen] for unit in self))
 
 
-def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> ReadingColumns:
+def unloaded_columns(foot_x: Floats, tip_angle: float | Floats = np.pi / 2) -> ReadingColumns:
     """The readings of vibrissae that touch nothing."""
     empty = np.full((len(COLUMNS), foot_x.size), np.nan)
     columns: ReadingColumns = dict(zip(COLUMNS, empty, strict=True))
@@ -46,7 +46,7 @@ def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> ReadingCol
     for name in CLAMP_READINGS:
         columns[name].fill(0.0)
     columns["phase"] = np.full(foot_x.size, PHASE_NUMBER["free"])
-    columns["tip_angle"].fill(tip_angle)
+    columns["tip_angle"][:] = tip_angle
     columns["status"] = np.full(foot_x.size, STATUS_NUMBER["ok"])
     return columns
 

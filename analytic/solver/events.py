@@ -16,6 +16,7 @@ from analytic.problem.columns import COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
+from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.support import Support, check_support, is_plain, require_plain
@@ -199,9 +200,9 @@ def _general_events(
     contour: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
 ) -> Events:
     touch = first_touch(contour, reach, vibrissa.unloaded)
-    path = follow(contour, vibrissa, touch, reach)
+    path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
     if not path.complete:
-        place = f"beyond foot_x = {path.foot_x[-1] * beam.length:.6g}"
+        place = f"beyond foot_x = {path.p[-1] * beam.length:.6g}"
         raise ArithmeticError(f"the equilibria along {contour.label} are lost {place}")
     places = {name: i for name, i in path.events().items() if i is not None}
     at = np.array([*places.values()])
@@ -210,7 +211,7 @@ def _general_events(
     columns = to_columns(states, units)
     clear = is_clear(contour, states)
     checked = without(without_inexact(columns, vibrissa, units), ~clear, "touches again")
-    checked["foot_x"] = np.where(clear, checked["foot_x"], path.foot_x[at] * beam.length)
+    checked["foot_x"] = np.where(clear, checked["foot_x"], path.p[at] * beam.length)
     # First contact is of two rigid bodies: there is no force whose direction could be checked.
     rows = zip(places, _rows(columns), _rows(checked), strict=True)
     found = {name: row if places[name] > 0 else first for name, first, row in rows}

@@ -13,6 +13,7 @@ from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, CONTACT, PHASE_NUMBER
 from analytic.problem.errors import InputError
 from analytic.problem.mirror import solve_either_way
+from analytic.problem.poses import along_x
 from analytic.problem.readings import Readings
 from analytic.problem.table import as_table, says
 from analytic.solver.columns import Units, to_columns, unloaded_columns, without
@@ -66,7 +67,7 @@ def _leftward(case: Case, coefficient: float) -> Readings:
     foot_x, z = case.foot_x[touching] / beam.length, start
     for part in np.linspace(0, 1, _STEPS + 1)[1:]:
         vibrissa = Vibrissa.of_case(case)._replace(friction=part * coefficient)
-        z, found = solve_near(contour, vibrissa, foot_x, z)
+        z, found = solve_near(contour, vibrissa, along_x(0.0).at(foot_x), z)
     solved = to_columns(states_at(contour, z, vibrissa), Units.of(beam))
     solved = without(solved, ~found, "diverged")
     columns = unloaded_columns(case.foot_x)

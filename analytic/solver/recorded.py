@@ -12,7 +12,7 @@ from analytic.problem.table import as_table, mirrored_columns
 from analytic.solver.columns import ReadingColumns
 
 Points = Mapping[str, float | None]
-"""Foot positions of what happens, by name [L]."""
+"""Parameters of the clamp's way of what happens, by name; foot positions [L] of a sweep."""
 
 
 def are_finite(columns: ReadingColumns) -> bool:
@@ -22,9 +22,8 @@ def are_finite(columns: ReadingColumns) -> bool:
 
 def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: bool) -> Readings:
     """The readings of a case whose sweep to the left, or its mirror image's, is solved."""
-    way = 1.0 if case.sweep.direction == "left" else -1.0
-    own = columns if way > 0 else mirrored_columns(columns)
-    places = {n: None if x is None else way * x * case.beam.length for n, x in events.items()}
+    own = columns if case.direction == "left" else mirrored_columns(columns)
+    places = {n: None if x is None else case.running_at(x) for n, x in events.items()}
     record = partial(_provenance, case, places)
     if finite:
         return solved_readings(own, case.beam, "analytic", record, places["snap_off"])

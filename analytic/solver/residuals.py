@@ -51,10 +51,14 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
         column(name, units.length)
         for name in ("foot_x", "contact_x", "contact_y", "contact_arc_length")
     )
-    alpha = column("contact_angle")
+    alpha, foot_y = column("contact_angle"), np.zeros_like(xi)
+    if "foot_y" in columns:
+        foot_y = column("foot_y", units.length)
+    if "clamp_angle" in columns:
+        vibrissa = vibrissa._replace(clamp_angle=column("clamp_angle"))
     slope = column("tip_angle") - vibrissa.turn_after(length)
     radius = vibrissa.radius_at(length)
-    x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
+    x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha) - foot_y
     force, lean = np.hypot(force_x, force_y), np.arctan(mu)
     # Of no force, as where a tip leaves the object, any direction is right.
     direction = np.where(force > 0, np.arctan2(-force_x, force_y), alpha + lean)

@@ -32,15 +32,15 @@ class SlidingBranch:
         """Follow the states that slide on (1), or back (-1)."""
         vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
         touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
-        path = follow(case.centreline, vibrissa, touch, case.reach)
+        path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
         if not path.complete:
-            place = path.foot_x[-1] * case.beam.length
+            place = path.p[-1] * case.beam.length
             raise ArithmeticError(f"the equilibria are lost beyond foot_x = {place:.6g}")
         return cls(vibrissa, path)
 
     def at(self, case: Case, foot_x: Floats) -> Floats:
         """States at foot positions."""
-        z, known = solve_places(case.centreline, self.vibrissa, self.path, foot_x)
+        z, known = solve_places(case.centreline, self.vibrissa, self.path, case.poses, foot_x)
         if not known.all():
             place = foot_x[int(np.argmin(known))] * case.beam.length
             raise ArithmeticError(f"no state is found at foot_x = {place:.6g}")
@@ -48,8 +48,8 @@ class SlidingBranch:
 
     def holds(self, foot_x: Floats) -> Booleans:
         """Whether there is a state of the branch at foot positions."""
-        last = self.path.foot_x[self.path.snap_off]
-        return np.asarray((foot_x < self.path.foot_x[0]) & (foot_x >= last))
+        last = self.path.p[self.path.snap_off]
+        return np.asarray((foot_x < self.path.p[0]) & (foot_x >= last))
 
 
 def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -135,7 +135,7 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
         return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
     length = case.beam.length
     onward, back = SlidingBranch.of(case, 1.0), SlidingBranch.of(case, -1.0)
-    first, last = onward.path.foot_x[0], onward.path.foot_x[onward.path.snap_off]
+    first, last = onward.path.p[0], onward.path.p[onward.path.snap_off]
     if not last <= turn_at / length < first:
         snap_off = f"{last * length:.6g}, where the vibrissa snaps off"
         allowed = f"from {snap_off}, to {first * length:.6g}, where it first touches"
@@ -167,6 +167,7 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
 
 def _check(case: Case) -> None:
     require("case", case, Case, "as Case(profile=..., friction=0.3)")
+    case.require_sweep("a sweep that turns round")
     if case.friction == 0:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
 

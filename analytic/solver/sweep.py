@@ -51,8 +51,9 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
 
 def _solve_general(case: Case) -> Readings:
     """With friction, an elastic clamp, a natural curvature, or what varies along the vibrissa."""
-    leftward = case if case.sweep.direction == "left" else case.mirrored()
+    leftward = case if case.direction == "left" else case.mirrored()
     columns, events = general.solve(leftward)[:2]
+    columns |= leftward.way_columns
     checked = residuals(columns, Vibrissa.of_case(leftward), Units.of(case.beam))
     columns["status"][inexact(checked, columns["status"])] = STATUS_NUMBER["diverged"]
     columns |= checked

@@ -25,8 +25,11 @@ def list_what_there_is(
 
 
 def _cases() -> Iterator[str]:
+    from dataclasses import astuple
+
     import numpy as np
 
+    from analytic.problem.clamp_path import Whisk
     from analytic.problem.named import NAMED_TABLES, named_case, named_contour
     from analytic.problem.support import beyond_the_paper
 
@@ -37,6 +40,9 @@ def _cases() -> Iterator[str]:
         case = named_case(name)
         beyond = beyond_the_paper(case.beam, case.support)
         parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
+        if isinstance(case.sweep, Whisk):
+            foot, start, stop, _ = astuple(case.sweep)
+            parts.append(f"foot at {foot:g} L, its clamp turns from {start:g} to {stop:g} rad")
         yield f"{name:18}{profile.label:40}{'; '.join(parts)}"
 
 

@@ -49,8 +49,12 @@ def _of_the_plane(readings: Readings) -> list[str]:
     table, snap_off = readings.table, readings.snap_off
     unsettled = readings.provenance.get("unsettled", {})
     parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
-    place = 0.0 if snap_off is None else snap_off / readings.beam.length
-    parts.append("no snap-off" if snap_off is None else f"snap-off at foot_x = {place:.4f} L")
+    running = readings.running
+    unit, per = (" rad", 1.0) if running == "clamp_angle" else (" L", readings.beam.length)
+    place = 0.0 if snap_off is None else snap_off / per
+    parts.append(
+        "no snap-off" if snap_off is None else f"snap-off at {running} = {place:.4f}{unit}"
+    )
     if "kinetic_share" in table:
         touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
         parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")

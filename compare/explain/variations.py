@@ -36,7 +36,7 @@ def variations(case: Case) -> dict[str, Readings]:
     """
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
     # Nearby cases start a little elsewhere by default; all are swept over the same stations.
-    case = replace(case, sweep=replace(case.sweep, start=start, stop=stop))
+    case = case.between(start, stop)
     beam, tip_radius = case.beam, QUANTITIES["tip_radius"].value(case)
     units = {name: quantity.unit(case) for name, quantity in QUANTITIES.items()}
     units |= {"radius": beam.radius, "tip_radius": -tip_radius}
@@ -72,8 +72,7 @@ def on_polygon(case: Case, points: int) -> Readings:
     length = case.beam.length
     vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
-    sweep = replace(case.sweep, start=start, stop=stop)
-    return solve_sweep(replace(case, profile=polygon(vertices), sweep=sweep))
+    return solve_sweep(replace(case, profile=polygon(vertices)).between(start, stop))
 
 
 def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:

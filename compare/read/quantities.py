@@ -22,7 +22,7 @@ from compare.read.complaints import complaint, plain_name, require_known
 from compare.read.toml import KeyPlace
 from compare.read.units import in_si
 
-_WITH_UNITS = ("beam", "support", "profile", "sweep", "body", "path")
+_WITH_UNITS = ("beam", "support", "profile", "sweep", "whisk", "body", "path")
 
 EXAMPLES = {
     "N": ("force", "0.2 mN"),

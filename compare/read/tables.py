@@ -13,6 +13,7 @@ from analytic import (
     Direction,
     InputError,
     Sweep,
+    Whisk,
 )
 from analytic.problem.support import Support, check_support, support_record
 from compare.judge.tolerances import Tolerances
@@ -91,6 +92,19 @@ class StationsTable(Table):
         return Sweep(self.stations, self.start, self.stop, self.direction)
 
 
+class WhiskTable(Table):
+    """The angles of a clamp whose foot stands."""
+
+    foot_x: Length = 0.0
+    start: Angle
+    stop: Angle
+    stations: int = Whisk.stations
+
+    def build(self) -> Whisk:
+        """The way of the clamp."""
+        return Whisk(self.foot_x, self.start, self.stop, self.stations)
+
+
 class Physics(NamedTuple):
     """A problem without a sweep, in the units of the file, or SI."""
 
@@ -138,6 +152,7 @@ class CaseFile(Table):
     contact: ContactTable = ContactTable()  # the physics
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
     sweep: StationsTable = StationsTable()  # the physics
+    whisk: WhiskTable | None = None  # the physics; instead of a sweep
     # The numerics of the simulation.
     mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
     # A model of the user's own, if it is to be swept instead of ours.
@@ -165,11 +180,13 @@ class CaseFile(Table):
     def case(self, folder: Path, name: str) -> Case:
         """The whole problem."""
         beam, contour, held = self.physics(folder)
+        if self.whisk is not None and "sweep" in self.model_fields_set:
+            raise InputError("[sweep] beside [whisk]", "both", "one of them", "leave one out")
         try:
             return Case(
                 beam,
                 contour,
-                self.sweep.build(),
+                self.sweep.build() if self.whisk is None else self.whisk.build(),
                 self.name or name,
                 **held._asdict(),
             )

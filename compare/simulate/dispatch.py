@@ -49,6 +49,7 @@ def simulate(
     from engines import find_engine  # engines are imported only where they are used
     from engines.apart import checked as checked_readings
 
+    case.require_sweep(f"the engine {engine}")
     return checked_readings(find_engine(engine).sweep(case, settings, advance), case)
 
 

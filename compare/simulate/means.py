@@ -22,8 +22,7 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
         return simulate_sweep(case, settings)
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
-    dense = replace(case.sweep, stations=(stations - 1) * _PARTS + 1, start=first, stop=last)
-    found = simulate_sweep(replace(case, sweep=dense), settings)
+    found = simulate_sweep(case.between(first, last, (stations - 1) * _PARTS + 1), settings)
     table = found.table.iloc[::_PARTS].reset_index(drop=True)
     places = np.arange(len(found.table))
     offsets = average * _PARTS * np.linspace(-0.5, 0.5, _PARTS + 1)

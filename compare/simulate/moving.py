@@ -82,7 +82,7 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
         natural_curvature=found.natural_curvature,
     )
     ends = float(case.foot_x[0]), float(case.foot_x[-1])
-    return replace(case, beam=beam, sweep=replace(case.sweep, start=ends[0], stop=ends[1]))
+    return replace(case, beam=beam).between(*ends)
 
 
 def _swept(

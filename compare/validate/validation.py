@@ -200,6 +200,7 @@ def validate(
     InputError
         If no compared station has a sensitivity, or the case cannot be solved with its inputs off.
     """
+    case.require_sweep("a validation")
     reach = sensitivities(case, stated, samples)
     whole_table = found.alignment.table
     table = whole_table.iloc[:: -(-len(whole_table) // _MOST) or 1].reset_index(drop=True)

@@ -46,7 +46,7 @@ class CableOnContour:
         self._surface = Surface(case)
         # Between the two feet the vibrissa at rest is in the object.
         touch = first_touch(self._line, case.reach, rest)
-        self._near, self._far = touch.foot_x, self._last_touch()
+        self._near, self._far = touch.p, self._last_touch()
         if touch.excess < 0:
             s = np.array(1 + touch.excess)
             self._cable.let_slide(float(s), np.array(rest.at(s)[:2]))

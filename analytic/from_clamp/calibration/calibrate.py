@@ -11,7 +11,8 @@ from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_u
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.problem.arrays import Floats
-from analytic.problem.case import Case, Direction, Sweep
+from analytic.problem.case import Case
+from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
@@ -133,6 +134,8 @@ def calibrate(
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
     require("case", case, Case, "named_case('catenary') makes one")
+    for given in (readings, case):
+        given.require_sweep("a calibration")
     names = checked_unknowns(unknowns, case)
     check_size(readings, case)
     measured = measured_under_load(readings, noise, len(names))

@@ -33,7 +33,7 @@ class Expected:
         found = self.readings.copy()
         leftward, stations = _to_the_left(case, foot_x)
         beam, vibrissa = leftward.beam, Vibrissa.of_case(leftward)
-        moved = stations[self.loaded] / beam.length
+        moved = leftward.poses.at(stations[self.loaded] / beam.length)
         here = solve_beside(leftward.centreline, vibrissa, moved, self.places, self._slopes)
         columns = to_columns(here, Units.of(beam))
         found[:, self.loaded] = [columns[name] for name in CLAMP_READINGS]
@@ -55,7 +55,7 @@ class Expected:
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
     """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep."""
     leftward, stations = _to_the_left(case, foot_x)
-    solved = solve(leftward, stations)
+    solved = solve(leftward, stations / case.beam.length)
     columns, touching = solved.columns, solved.touching
     loaded = touching & (columns["status"] == STATUS_NUMBER["ok"])
     found = np.array([columns[name] for name in CLAMP_READINGS], dtype=float)

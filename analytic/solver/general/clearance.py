@@ -6,12 +6,15 @@ vibrissa that is bent towards the object, as one of natural curvature may be bey
 before it, can fail that: it would touch a second time, and the state is none.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from analytic.numerics.batches import take
 from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
+from analytic.problem.poses import Pose
 from analytic.solver.general.march import Trail, march
 from analytic.solver.general.states import States, Vibrissa
 
@@ -100,11 +103,11 @@ def _is_outside(contour: Contour, contact: States) -> Booleans:
     return np.asarray(_outside(contour, x, y, taper).all(axis=0))
 
 
-def is_rest_clear(contour: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Booleans:
+def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
     """Whether the unloaded vibrissa stays outside the object."""
-    s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, foot_x.size))
-    x, y, _ = vibrissa.unloaded.at(s)
-    outside = _outside(contour, x + foot_x, y, vibrissa.unloaded.taper(s))
+    s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, pose.foot_x.size))
+    x, y, _ = replace(vibrissa.unloaded, angle=0.0).at(s)
+    outside = _outside(contour, *pose.place(x, y), vibrissa.unloaded.taper(s))
     return np.asarray(outside.all(axis=0))
 
 

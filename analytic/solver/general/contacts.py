@@ -8,6 +8,7 @@ from analytic.numerics.batches import take
 from analytic.numerics.newton import solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import equilibria
@@ -27,7 +28,7 @@ def contacts(contour: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     """
     reach = contact_range(contour)
     touch = first_touch(contour, reach, vibrissa.unloaded)
-    path = follow(contour, vibrissa, touch, reach)
+    path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
     z = _solved(contour, vibrissa, path, t)
     return states(contour.at(t), z[:, 0], z[:, 1], vibrissa)
 
@@ -55,7 +56,7 @@ def _on_path(path: Path, t: Floats) -> Floats:
             cells[(t - begin) * (t - end) <= 0] = i
     found = np.full((len(t), 2), np.nan)
     on = cells >= 0
-    found[on] = path.at(cells[on], path.share(cells[on], t[on], 0))[:, 1:]
+    found[on] = path.at(cells[on], path.share(cells[on], t[on], 0))[:, 1:3]
     return found
 
 

@@ -1,6 +1,7 @@
 """The curve of equilibria of the general vibrissa: points on it, steps along it, kinks and folds.
 
-Its coordinates are contour parameter t, normal force f and excess w. Keller's pseudo-arclength
+Its coordinates are contour parameter t, normal force f, excess w, and the parameter p of the
+clamp's way (`analytic.problem.poses`). Keller's pseudo-arclength
 continuation: a step along the tangent, and Newton's method back to the curve in the plane normal
 to it. The curve has a kink where the phases take turns and where the contour is not smooth.
 """
@@ -11,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
+from analytic.problem.poses import Poses
+from analytic.solver.general.states import INSIDE, Vibrissa, balance
 
 _NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
@@ -23,7 +24,9 @@ _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
 _LEAST = 1e-8  # of a rate: what is least is then exact to its square
 _SEARCHES = 40
-_T, _F, _W = range(3)
+_T, _F, _W, _P = range(4)
+_OTHERS = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
 
 
 class Point(NamedTuple):
@@ -31,13 +34,21 @@ class Point(NamedTuple):
 
     z: Floats
     direction: Floats  # derivative of `z` by the curve's length
-    foot_x: float
-    rate: float  # foot position [L] and its derivative by the curve's length
     amplitude: float = 0.0  # amplitude of the span [rad]; see `States`
-    # whether `direction` is that of the cross product of the two conditions' derivatives, or -1. It
+    # whether `direction` is that of the cross product of the conditions' derivatives, or -1. It
     # stays along a smooth curve. Next to buckling two curves come close to each other, and the
     # other one has the other sense.
     sense: int = 1
+
+    @property
+    def p(self) -> float:
+        """Parameter of the clamp's way."""
+        return float(self.z[_P])
+
+    @property
+    def rate(self) -> float:
+        """Its derivative by the curve's length."""
+        return float(self.direction[_P])
 
 
 class EquilibriumCurve(NamedTuple):
@@ -45,14 +56,15 @@ class EquilibriumCurve(NamedTuple):
 
     contour: Contour
     vibrissa: Vibrissa
+    poses: Poses
     t_range: tuple[float, float]
     breaks: Floats
 
-    def start(self, t: float, excess: float) -> Point:
+    def start(self, t: float, excess: float, p: float) -> Point:
         """The unloaded vibrissa at first contact."""
-        here = self._loaded(np.array([t, 0.0, excess]))
+        here = self._loaded(np.array([t, 0.0, excess, p]))
         if excess == 0 and here.direction[_W] < 0:
-            here = self._loaded(np.array([t, 0.0, INSIDE]))
+            here = self._loaded(np.array([t, 0.0, INSIDE, p]))
         return here
 
     def _loaded(self, z: Floats) -> Point:
@@ -145,7 +157,7 @@ class EquilibriumCurve(NamedTuple):
 
     def _scale(self, z: Floats) -> Floats:
         """The size of the coordinates: the force's is its own."""
-        return np.array([1.0, max(self.vibrissa.least_force, z[_F]), 1.0])
+        return np.array([1.0, max(self.vibrissa.least_force, z[_F]), 1.0, 1.0])
 
     def _size(self, way: Floats, at: Floats) -> float:
         return math.hypot(*(way / self._scale(at)))
@@ -173,17 +185,11 @@ class EquilibriumCurve(NamedTuple):
         return self._with_direction(z)[0]
 
     def _with_direction(self, z: Floats) -> tuple[Point, Floats, Floats]:
-        """A point, what it misses, and the derivatives of that and of the foot, shape (3, 3)."""
-        here, rates = with_rates(
-            self.contour.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
-        )
-        slopes = np.concatenate(rates)
-        direction = cross(slopes[0], slopes[1])
+        """A point, what it misses, and the derivatives of that, shape (3, 4)."""
+        misses, slopes, here = balance(self.contour, self.vibrissa, self.poses, z[None])
+        direction = normal_to(slopes[0])
         direction = direction / (self._size(direction, z) or math.nan)
-        misses = np.array([here.slope_residual[0], here.height_residual[0]])
-        rate = float(slopes[2] @ direction)
-        point = Point(z, direction, float(here.foot_x[0]), rate, float(here.amplitude[0]))
-        return point, misses, slopes
+        return Point(z, direction, float(here.amplitude[0])), misses[0], slopes[0]
 
     def _corrected(
         self, z: Floats, normal: Floats, pinned: slice = slice(0), *, near: float = 0.0
@@ -198,22 +204,21 @@ class EquilibriumCurve(NamedTuple):
                 return None
             if missed < _CLOSE or (missed < _ROUNDING and missed >= before / 2):
                 return point
-            u, v = cross(slopes[1], normal), cross(normal, slopes[0])  # Cramer's rule
-            determinant = float(slopes[0] @ u)
-            if determinant == 0:
+            try:
+                step = np.linalg.solve(np.vstack([slopes, normal]), np.append(misses, 0.0))
+            except np.linalg.LinAlgError:
                 return None
-            step = (misses[0] * u + misses[1] * v) / determinant
             z = z - step
             z[pinned] = value
             if not z[_F] >= 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
                 return None
             if self._size(step, z) < near:
-                return point._replace(z=z, foot_x=point.foot_x - float(slopes[2] @ step))
+                return point._replace(z=z)
         return None
 
     def _fixed(self, z: Floats, index: int) -> Point | None:
         """The point of the curve with one coordinate as it is."""
-        normal = np.zeros(3)
+        normal = np.zeros(4)
         normal[index] = 1.0
         return self._corrected(z, normal, slice(index, index + 1))
 
@@ -224,4 +229,11 @@ def _along(point: Point, way: Floats) -> Point:
 
 
 def _reversed(point: Point) -> Point:
-    return point._replace(direction=-point.direction, rate=-point.rate, sense=-point.sense)
+    return point._replace(direction=-point.direction, sense=-point.sense)
+
+
+def normal_to(slopes: Floats) -> Floats:
+    """The cross product of three rows, shape (..., 3, 4): what changes none of them."""
+    minors = np.moveaxis(slopes[..., _OTHERS], -2, -3)
+    with np.errstate(invalid="ignore"):  # next to what no vibrissa can be
+        return np.asarray(_SIGNS * np.linalg.det(minors))

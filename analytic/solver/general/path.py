@@ -14,9 +14,10 @@ import numpy as np
 from analytic.numerics.hermite import hermite
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
+from analytic.problem.poses import Poses
 from analytic.problem.rest import FirstTouch
-from analytic.solver.general.curve import EquilibriumCurve, Point
-from analytic.solver.general.states import Vibrissa, with_rates
+from analytic.solver.general.curve import EquilibriumCurve, Point, normal_to
+from analytic.solver.general.states import Vibrissa, balance
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -34,20 +35,35 @@ _HALVINGS = 20  # of a cell, to begin Newton's method from
 _ROUNDING = 4 * float(np.finfo(float).eps)  # between the two sides of a kink
 
 
+EVENTS = (
+    "first_contact",
+    "phase_b_start",
+    "phase_b_end",
+    "back_start",
+    "back_end",
+    "out_of_plane",
+    "snap_off",
+)
+"""What may happen in a sweep."""
+
+
 class Path(NamedTuple):
     """Equilibria in sweep order; a cell lies between two neighbours and is smooth.
 
-    ``z`` has shape (n, 3): contour parameter, normal force, excess; ``direction`` is its derivative
-    by the curve's length, ``foot_x`` the foot position [L] and ``rate`` its derivative, shape (n,).
-    ``complete`` is false if the curve was lost before its end.
+    ``z`` has shape (n, 4): contour parameter, normal force, excess, and the parameter of the
+    clamp's way, that of a sweep its foot position; ``direction`` is its derivative by the curve's
+    length. ``complete`` is false if the curve was lost before its end.
     """
 
     z: Floats
     direction: Floats
-    foot_x: Floats
-    rate: Floats
     complete: bool
     vibrissa: Vibrissa
+
+    @property
+    def p(self) -> Floats:
+        """Parameters of the clamp's way, shape (n,)."""
+        return self.z[:, 3]
 
     @property
     def side(self) -> Integers:
@@ -56,8 +72,8 @@ class Path(NamedTuple):
 
     @property
     def snap_off(self) -> int:
-        """Which point has the least foot position: from there the vibrissa lets go."""
-        return int(np.argmin(self.foot_x))
+        """Which point is the farthest on the way: from there the vibrissa lets go."""
+        return int(np.argmin(self.p))
 
     def events(self) -> dict[str, int | None]:
         """What happens on the way to the snap-off, and at which point; None where it does not."""
@@ -77,18 +93,14 @@ class Path(NamedTuple):
             "snap_off": self.snap_off if self.complete else None,
         }
 
-    def cells(self, foot_x: Floats) -> Integers:
-        """The cell that holds the state at each foot position."""
-        return cells(self.foot_x, foot_x)
+    def cells(self, p: Floats) -> Integers:
+        """The cell that holds the state at each parameter of the way."""
+        return cells(self.p, p)
 
-    def share(self, cells: Integers, wanted: Floats, coordinate: int | None) -> Floats:
-        """How far along its cell something has a wanted value, by Hermite's cubic."""
-        foot = coordinate is None
-        value = self.foot_x if foot else self.z[:, coordinate]
-        rate = (
-            self.length(cells)
-            * (self.rate if foot else self.direction[:, coordinate])[np.stack([cells, cells + 1])]
-        )
+    def share(self, cells: Integers, wanted: Floats, coordinate: int) -> Floats:
+        """How far along its cell a coordinate has a wanted value, by Hermite's cubic."""
+        value, ends = self.z[:, coordinate], np.stack([cells, cells + 1])
+        rate = self.length(cells) * self.direction[:, coordinate][ends]
         begin, end = value[cells], value[cells + 1]
         falls = begin > end
         low, high = np.zeros_like(wanted), np.ones_like(wanted)
@@ -138,27 +150,30 @@ def phase_limits(tangent: Booleans) -> tuple[int | None, int | None]:
     return int(inside[0]), end if end < tangent.size else None
 
 
-def located(events: Mapping[str, int | None], foot_x: Floats) -> dict[str, float | None]:
-    """The foot positions of what happens at points in sweep order."""
-    return {name: None if i is None else float(foot_x[i]) for name, i in events.items()}
+def located(events: Mapping[str, int | None], p: Floats) -> dict[str, float | None]:
+    """The foot positions, or parameters, of what happens at points in sweep order."""
+    return {name: None if i is None else float(p[i]) for name, i in events.items()}
 
 
 def follow(
-    contour: Contour, vibrissa: Vibrissa, touch: FirstTouch, reach: tuple[float, float]
+    contour: Contour,
+    vibrissa: Vibrissa,
+    touch: FirstTouch,
+    reach: tuple[float, float],
+    poses: Poses,
 ) -> Path:
     """Follow the equilibria from first contact to where force or reach end."""
     # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
     reach = reach[0], contour.t_range[1]
-    curve = EquilibriumCurve(contour, vibrissa, reach, contour.breaks())
+    curve = EquilibriumCurve(contour, vibrissa, poses, reach, contour.breaks())
     for turn, step in _STEPS:
         points = _points(curve, touch, turn, step)
         complete = _ended(points, reach)
         if complete:
             break
     points = _with_turns(curve, _exact(curve, points))
-    columns = zip(*(point[:4] for point in points), strict=True)
-    z, direction, foot_x, rate = (np.array(column) for column in columns)
-    return Path(z, direction, foot_x, rate, complete, vibrissa)
+    z, direction = (np.array(column) for column in zip(*(p[:2] for p in points), strict=True))
+    return Path(z, direction, complete, vibrissa)
 
 
 def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
@@ -173,28 +188,27 @@ def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     size[:, 1] = np.maximum(curve.vibrissa.least_force, z[:, 1])
     normal = np.array([point.direction for point in points]) / size**2
     for polishes in range(_POLISHES + 1):
-        here, rates = with_rates(curve.contour.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa)
-        misses = np.column_stack([here.slope_residual, here.height_residual, np.zeros(len(z))])
+        misses, slopes, _ = balance(curve.contour, curve.vibrissa, curve.poses, z)
         # One that is exact stays: it may stand on a kink.
         poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, 1] > 0)
         if polishes == _POLISHES or not poor.any():
             break
-        slopes = np.stack([rates.slope_residual, rates.height_residual, normal], axis=1)[poor]
-        z[poor] -= np.linalg.solve(slopes, misses[poor, :, None])[..., 0]
+        across = np.concatenate([slopes, normal[:, None]], axis=1)[poor]
+        missed = np.pad(misses[poor], ((0, 0), (0, 1)))
+        z[poor] -= np.linalg.solve(across, missed[..., None])[..., 0]
         z[:, 2] = curve.vibrissa.within(side, z[:, 2])
-    way = np.cross(rates.slope_residual, rates.height_residual)
+    way = normal_to(slopes)
     way *= np.sign(np.einsum("nk,nk->n", way, normal))[:, None]
     direction = way / np.linalg.norm(way / size, axis=1)[:, None]
-    rate = np.einsum("nk,nk->n", rates.foot_x, direction)
-    exact = zip(points, z, direction, here.foot_x.tolist(), rate.tolist(), strict=True)
-    return [point._replace(z=z, direction=d, foot_x=x, rate=r) for point, z, d, x, r in exact]
+    exact = zip(points, z, direction, strict=True)
+    return [point._replace(z=z, direction=d) for point, z, d in exact]
 
 
 def _points(
     curve: EquilibriumCurve, touch: FirstTouch, largest: float, length: float
 ) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
-    points, behind = [curve.start(touch.t, touch.excess)], None
+    points, behind = [curve.start(touch.t, touch.excess, touch.p)], None
     # Past small facets the foot turns back at every corner, and goes on.
     slack = min(_FACET, float(np.diff(curve.breaks).max(initial=0.0)))
     for _ in range(_MOST + _A_BREAK * len(curve.breaks)):
@@ -227,7 +241,7 @@ def _hides(curve: EquilibriumCurve, begin: Point, end: Point) -> bool:
     way = end.z - begin.z
     way[1] /= max(curve.vibrissa.least_force, begin.z[1])
     length, most = float(np.linalg.norm(way)), curve.vibrissa.most_turned
-    mean = (end.foot_x - begin.foot_x) / length
+    mean = (end.p - begin.p) / length
     low, high = sorted((begin.rate, end.rate))
     slack = _TRUST * max(-low, high) + _FLAT
     return not low - slack <= mean <= high + slack or _skips_phase(begin, end, length, most)
@@ -259,12 +273,12 @@ def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) 
         return True
     if not (here.amplitude > np.pi or here.z[2] > np.pi) or here.rate <= 0:
         return False
-    return slack == 0 or here.foot_x > min(point.foot_x for point in points) + slack
+    return slack == 0 or here.p > min(point.p for point in points) + slack
 
 
 def _with_turns(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     """The points, and those between where foot position or contact's arc length are least."""
-    for rate in (_foot_rate, _excess_rate):
+    for rate in (_p_rate, _excess_rate):
         found = points[:1]
         for begin, end in pairwise(points):
             if rate(begin) < 0 < rate(end) and not _are_kink(begin, end):
@@ -282,7 +296,7 @@ def _are_kink(begin: Point, end: Point) -> bool:
     return bool(apart <= _ROUNDING * size)
 
 
-def _foot_rate(point: Point) -> float:
+def _p_rate(point: Point) -> float:
     return point.rate
 
 

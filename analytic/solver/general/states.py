@@ -21,6 +21,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.poses import Pose, Poses
 from analytic.problem.support import Support
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
@@ -47,7 +48,8 @@ class Vibrissa(NamedTuple):
     radius: float | Floats = 0.0  # at the tip, or one a state [L]
     # what varies along the vibrissa, if anything does; the natural curvature is then its.
     rod: RodProperties | None = None
-    clamp_angle: float = 0.0  # by which its clamp leans to the left of the upright [rad]
+    # by which its clamp leans to the left of the upright, or one a state [rad].
+    clamp_angle: float | Floats = 0.0
 
     @classmethod
     def of(cls, beam: Beam, held: Support) -> "Vibrissa":
@@ -70,7 +72,7 @@ class Vibrissa(NamedTuple):
     @property
     def is_plain(self) -> bool:
         """Whether it is the paper's: straight, uniform, upright in a rigid clamp, not rubbed."""
-        held = self.natural_curvature == self.compliance == self.clamp_angle == 0
+        held = self.natural_curvature == self.compliance == 0 and not np.any(self.clamp_angle)
         return self.rod is None and held and not np.any(self.friction)
 
     @property
@@ -79,7 +81,7 @@ class Vibrissa(NamedTuple):
         if self.rod is not None:
             return self.rod.unloaded
         radius = float(self.radius)
-        return Unloaded(self.natural_curvature, radius, radius, self.clamp_angle)
+        return Unloaded(self.natural_curvature, radius, radius, float(self.clamp_angle))
 
     def turn_after(self, s: Floats) -> Floats | float:
         """By how much it turns at rest on the way from a place to its tip [rad]."""
@@ -159,7 +161,7 @@ class States(NamedTuple):
     moment: Floats  # M_Az, on the vibrissa
     up: Floats
     reach: Floats  # height of the contact above the foot and its distance from it along x
-    slope_residual: Floats  # what the slope at the clamp misses [rad]; zero in balance
+    angle: Floats  # by which a clamp leans to the left that would hold it [rad]
     # amplitude of the span: from pi on, half a period, it is one that buckles [rad].
     amplitude: Floats
     vibrissa: Vibrissa
@@ -196,8 +198,13 @@ class States(NamedTuple):
         return self.offset_point.xi - self.reach
 
     @property
+    def slope_residual(self) -> Floats:
+        """What the clamp's angle misses [rad]; zero in balance."""
+        return self.angle - self.vibrissa.clamp_angle
+
+    @property
     def height_residual(self) -> Floats:
-        """Height of the span's end over the contour; zero in balance."""
+        """Height of the span's end over the contour, from a foot at y = 0; zero in balance."""
         return self.up - self.offset_point.eta
 
     @property
@@ -238,7 +245,7 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         moment,
         start.along * sin + start.across * cos,
         start.along * cos - start.across * sin,
-        vibrissa.compliance * moment - 2 * turned - vibrissa.clamp_angle,
+        vibrissa.compliance * moment - 2 * turned,
         start.amplitude,
         vibrissa,
     )
@@ -278,8 +285,8 @@ def with_rates(
         excess + step_w * _BY_EXCESS[:, None],
         vibrissa,
     )
-    moment, up, reach, slope_residual, amplitude = (values[0] for values in found[3:8])
-    here = States(point, force, excess, moment, up, reach, slope_residual, amplitude, vibrissa)
+    moment, up, reach, angle, amplitude = (values[0] for values in found[3:8])
+    here = States(point, force, excess, moment, up, reach, angle, amplitude, vibrissa)
     stretch = here.offset_point.stretch
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
     by_t = (
@@ -294,6 +301,32 @@ def with_rates(
         reach = reach - (offset_point.xi - point.xi)
     rates = np.empty((3, len(force), 3))
     rates[..., 0] = by_t
-    changes = _WEIGHTS @ np.array([found.slope_residual, up, -reach])
+    changes = _WEIGHTS @ np.array([found.angle, up, -reach])
     rates[..., 1], rates[..., 2] = changes[:, 0] / step_f, changes[:, 1] / step_w
     return here, StateRates(*rates)
+
+
+def misses(found: States, pose: Pose) -> Floats:
+    """What states miss in poses of the clamp: of its angle, its height and its place, (n, 3)."""
+    return np.stack(
+        [
+            found.angle - pose.angle,
+            found.height_residual + pose.foot_y,
+            found.foot_x - pose.foot_x,
+        ],
+        axis=1,
+    )
+
+
+def balance(
+    contour: Contour, vibrissa: Vibrissa, poses: Poses, z: Floats
+) -> tuple[Floats, Floats, States]:
+    """What states on a way of the clamp miss, and its derivatives.
+
+    By the contour parameter, the normal force, the excess and the way's parameter, shape (n, 4).
+    """
+    here, rates = with_rates(contour.at(z[:, 0]), z[:, 1].copy(), z[:, 2].copy(), vibrissa)
+    pose, rate = poses.at(z[:, 3]), poses.rate(z[:, 3])
+    by_p = np.stack([-rate.angle, rate.foot_y, -rate.foot_x], axis=1)
+    slopes = np.concatenate([np.stack(rates, axis=1), by_p[:, :, None]], axis=2)
+    return misses(here, pose), slopes, here

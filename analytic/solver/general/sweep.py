@@ -8,10 +8,10 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
-from analytic.problem.rest import first_touch
+from analytic.problem.poses import Pose, Poses
 from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns, without
 from analytic.solver.general.clearance import is_clear, is_rest_clear
-from analytic.solver.general.path import follow, located
+from analytic.solver.general.path import EVENTS, follow, located
 from analytic.solver.general.states import States, Vibrissa, states_at, with_rates
 from analytic.solver.general.stations import solve_places
 
@@ -29,30 +29,33 @@ class Solved(NamedTuple):
     places: Floats
 
 
-def solve(case: Case, stations: Floats | None = None) -> Solved:
-    """Solve a sweep to the left."""
-    beam, vibrissa = case.beam, Vibrissa.of_case(case)
-    stations = case.foot_x if stations is None else stations
-    contour, foot_x = case.centreline, stations / beam.length
-    touch = first_touch(contour, case.reach, vibrissa.unloaded)
-    path = follow(contour, vibrissa, touch, case.reach)
-    last = path.foot_x[path.snap_off]
-    held = (foot_x < path.foot_x[0]) & (foot_x >= last - _ROUNDING * max(1.0, abs(last)))
-    past = (foot_x < path.foot_x[0]) & ~held
+def solve(case: Case, way: Floats | None = None) -> Solved:
+    """Solve a sweep to the left, at its stations or at other parameters of its way."""
+    beam, vibrissa, contour, poses = case.beam, Vibrissa.of_case(case), case.centreline, case.poses
+    p = case.way if way is None else way
+    pose = poses.at(p)
+    rest_angle = float(vibrissa.unloaded.at(np.array(1.0))[2]) - vibrissa.clamp_angle
+    columns = unloaded_columns(pose.foot_x * beam.length, rest_angle + pose.angle)
+    if case.touch is None:
+        none = np.zeros(len(p), dtype=bool)
+        return Solved(columns, dict.fromkeys(EVENTS), none, np.empty((0, 3)))
+    path = follow(contour, vibrissa, case.touch, case.reach, poses)
+    last = path.p[path.snap_off]
+    held = (p < path.p[0]) & (p >= last - _ROUNDING * max(1.0, abs(last)))
+    past = (p < path.p[0]) & ~held
     lost = past & (not path.complete)
-    lost[past] |= ~is_rest_clear(contour, vibrissa, foot_x[past])
+    beyond = Pose(*(values[past] for values in pose))
+    lost[past] |= ~is_rest_clear(contour, vibrissa, beyond)
 
-    rest_angle = float(vibrissa.unloaded.at(np.array(1.0))[2])
-    columns = unloaded_columns(stations, rest_angle)
     columns = without(columns, lost, "diverged" if not path.complete else "touches again")
-    columns["foot_x"] = stations
-    places = np.full((len(stations), 3), np.nan)
+    columns["foot_x"] = pose.foot_x * beam.length
+    places = np.full((len(p), 3), np.nan)
     if held.any():
-        z, found = solve_places(contour, vibrissa, path, foot_x[held])
+        z, found = solve_places(contour, vibrissa, path, poses, p[held])
         touching = states_at(contour, z, vibrissa)
         places[held] = np.where(found[:, None], z, np.nan)
         solved = to_columns(touching, Units.of(beam))
-        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(touching)
+        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(touching, poses, p[held])
         solved["status"][sticks] = STATUS_NUMBER["sticks"]
         solved = without(solved, ~is_clear(contour, touching), "touches again")
         for name in COLUMNS[1:]:
@@ -66,7 +69,7 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
         i = points[name]
         if i is not None and not _is_clear_at(contour, vibrissa, path.z[i : i + 1]):
             points[name] = None
-    return Solved(columns, located(points, path.foot_x), held | lost, places[held | lost])
+    return Solved(columns, located(points, path.p), held | lost, places[held | lost])
 
 
 def _is_clear_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
@@ -74,8 +77,8 @@ def _is_clear_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
     return bool(is_clear(contour, found)[0])
 
 
-def _slides(found: States) -> Booleans:
-    """Whether the vibrissa slides on along the object as its foot moves to the left.
+def _slides(found: States, poses: Poses, p: Floats) -> Booleans:
+    """Whether the vibrissa slides on along the object as its clamp moves on.
 
     A place on it moves along the contour by what the contact does, less what the contact moves
     along the vibrissa.
@@ -83,7 +86,8 @@ def _slides(found: States) -> Booleans:
     if found.vibrissa.friction == 0:
         return np.ones(len(found.force), dtype=bool)
     _, rates = with_rates(found.point, found.force, found.excess, found.vibrissa)
-    way = np.cross(rates.slope_residual, rates.height_residual)
-    foot = np.einsum("nk,nk->n", rates.foot_x, way)
-    slip = found.offset_point.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
-    return np.asarray(slip / foot >= -_STILL)
+    step = poses.rate(p)
+    moved = np.stack([step.angle, -step.foot_y, step.foot_x], axis=1)
+    change = np.linalg.solve(np.stack(rates, axis=1), moved[..., None])[..., 0]
+    slip = found.offset_point.stretch * change[:, 0] - np.where(found.tangent, change[:, 2], 0.0)
+    return np.asarray(slip >= -_STILL)

@@ -25,6 +25,7 @@ _A, _B = style.PHASE_COLOURS["tip"], style.PHASE_COLOURS["tangent"]
 
 def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
     """Draw the paper's figures for a case, as far as they are of its vibrissa."""
+    case.require_sweep("the paper's figures")
     if case.beam.varies:
         return {"figure-14": profile(readings), "figure-15": observables(readings)}
     return {

@@ -39,6 +39,9 @@ class Base:
         self._folder = file.path.parent
         self._tables = self._overlaid(content)
         checked = checked_run(self._tables, file.place)
+        if isinstance(checked, PlanarRun) and checked.whisk is not None:
+            allowed = "left out: a study sweeps the foot along its line"
+            raise InputError(file.place(["whisk"]), "given", allowed, "choose a case with a sweep")
         try:
             self._built(checked)
         except InputError as error:
@@ -142,7 +145,7 @@ class Base:
                 raise InputError(
                     file.place(["model"]), "of a study", "left out", "a study sweeps our models"
                 )
-            base = {name: table for name, table in file.tables.items() if name in RUN_TABLES}
+            base = {name: t for name, t in file.tables.items() if name in (*RUN_TABLES, "whisk")}
         else:
             raise InputError(
                 self._file.place(["study", "case"]),

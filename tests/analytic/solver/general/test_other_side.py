@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, Case, Sweep, catenary, certify, find_events, reconstruct, solve_sweep
+from analytic.problem.poses import along_x
 from analytic.problem.support import Support
 from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.general.stations import solve_near
@@ -60,7 +61,8 @@ def test_references_of_equilibria_with_friction():
     vibrissa = Vibrissa.of(beam_of(1.0, 0.0), Support(friction=0.2))
     start = rows[["alpha", "f", "s1"]].to_numpy(float)
     start[:, 2] = np.pi + 1 - start[:, 2]
-    z, balanced = solve_near(PROFILE, vibrissa, rows["foot_x"].to_numpy(), start + 1e-3)
+    pose = along_x(0.0).at(rows["foot_x"].to_numpy())
+    z, balanced = solve_near(PROFILE, vibrissa, pose, start + 1e-3)
     assert balanced.all()
     found = states_at(PROFILE, z, vibrissa)
     assert (found.side == 1).all()

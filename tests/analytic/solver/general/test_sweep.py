@@ -84,14 +84,14 @@ def test_limit_is_the_papers_vibrissa(name):
     case = named_case(name)
     vibrissa = Vibrissa(radius=case.radius)
     touch = first_touch(case.centreline, case.reach, Unloaded())
-    path = follow(case.centreline, vibrissa, touch, case.reach)
+    path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
     events = plain.provenance["events"]
     for event, i in path.events().items():
         if event != "contact_length_minimum":
-            found = None if i is None else path.foot_x[i]
+            found = None if i is None else path.p[i]
             assert found == pytest.approx(events[event], abs=1e-13)
     held = (plain.table["phase"] != "free").to_numpy()
-    z, found = solve_places(case.centreline, vibrissa, path, case.foot_x[held])
+    z, found = solve_places(case.centreline, vibrissa, path, case.poses, case.foot_x[held])
     states = states_of(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     assert found.all()
     # 2e-13: each is exact to a few roundings of forces of up to 20.
@@ -202,7 +202,7 @@ def test_first_contact_is_that_of_two_rigid_bodies(natural, profile):
     inside = (y > grid.eta.min()) & (y <= grid.eta.max())
     feet = np.interp(y[inside], grid.eta, grid.xi) - x[inside]
     # A corner lies between two samples of the arc, which are 2.5e-5 apart.
-    assert found.foot_x == pytest.approx(feet.max(), abs=2e-5)
+    assert found.p == pytest.approx(feet.max(), abs=2e-5)
     assert (found.excess < 0) == (s[inside][np.argmax(feet)] < 1 - 1e-3)
 
 

@@ -200,13 +200,13 @@ def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
     rod = RodProperties(Unloaded(0.0, case.radius, case.radius), 1.0)
     vibrissa = Vibrissa(radius=case.radius, rod=rod)
     touch = first_touch(case.centreline, case.reach, Unloaded())
-    path = follow(case.centreline, vibrissa, touch, case.reach)
+    path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
     for event, i in path.events().items():
         if event != "contact_length_minimum":
-            found = None if i is None else path.foot_x[i]
+            found = None if i is None else path.p[i]
             assert found == pytest.approx(plain.provenance["events"][event], abs=1e-13)
     held = (plain.table["phase"] != "free").to_numpy()
-    z, found = solve_places(case.centreline, vibrissa, path, case.foot_x[held])
+    z, found = solve_places(case.centreline, vibrissa, path, case.poses, case.foot_x[held])
     states = states_of(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     assert found.all()
     # 2e-13: each is exact to a few roundings of forces of up to 20.
@@ -308,9 +308,12 @@ def test_first_contact_is_that_of_two_rigid_bodies(name):
         case = case_of(beam, profile)
         touch = first_touch(case.centreline, case.reach, beam.unloaded)
         vibrissa = Vibrissa.of(beam, Support())
-        beside = touch.foot_x + np.array([-1e-2, 1e-6])
+        beside = touch.p + np.array([-1e-2, 1e-6])
         # Its 16 places may lie beside the contact, and one that goes along enters by a square.
-        assert list(is_rest_clear(case.centreline, vibrissa, beside)) == [False, True]
+        assert list(is_rest_clear(case.centreline, vibrissa, case.poses.at(beside))) == [
+            False,
+            True,
+        ]
 
 
 def test_snap_off_is_a_fold():
@@ -331,7 +334,7 @@ def test_curve_ends_where_a_flexible_tip_would_wind_up():
     case = case_of(beam, PROFILES["g1"], stations=200, friction=0.3, clamp_stiffness=8.0)
     contour, vibrissa = case.centreline, Vibrissa.of(beam, Support(8.0, 0.3))
     touch = first_touch(contour, case.reach, vibrissa.unloaded)
-    path = follow(contour, vibrissa, touch, case.reach)
+    path = follow(contour, vibrissa, touch, case.reach, case.poses)
     assert path.complete
     assert len(path.z) < 100
     assert (assert_sound(case).table["status"] == "ok").all()

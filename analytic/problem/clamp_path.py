@@ -1,0 +1,237 @@
+"""Ways of the clamp: along its line, turning about a foot that stands, and any at all."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import finite, floats, whole, within
+from analytic.problem.poses import Poses, Straight, Through, travelled
+
+Direction: TypeAlias = Literal["left", "right"]
+Running: TypeAlias = Literal["foot_x", "clamp_angle", "travel"]
+"""The column over which a sweep runs."""
+
+MOST_STATIONS = 1_000_000
+_MOST_TURNED = math.pi  # rad, from the upright
+_LEAST = 1e-9  # rad or L; stations must differ by more than rounding
+
+
+class ClampWay(ABC):
+    """A way of the clamp, station by station."""
+
+    @property
+    @abstractmethod
+    def running(self) -> Running:
+        """The column over which it runs."""
+
+
+class TurningWay(ClampWay):
+    """One on which the clamp turns, or leaves its line."""
+
+    @property
+    @abstractmethod
+    def direction(self) -> Direction:
+        """Where it goes to."""
+
+    @abstractmethod
+    def stations_along(self, length: float) -> Floats:
+        """Values of the column over which it runs."""
+
+    @abstractmethod
+    def poses(self, length: float) -> Poses:
+        """The way to the left, dimensionless."""
+
+    @abstractmethod
+    def mirrored(self) -> "TurningWay":
+        """The mirror image, x to -x."""
+
+
+@dataclass(frozen=True)
+class Sweep(ClampWay):
+    """Stations of the foot, equally spaced from `start` to `stop`.
+
+    Parameters
+    ----------
+    stations : int
+        Number of stations, from 2 to 1,000,000.
+    start, stop : float, optional
+        First and last foot position [length]. By default from just before the first contact to
+        just past the position from which the contour is out of reach: geometry only, so that no
+        engine learns the answer from it.
+    direction : str
+        Where the foot moves to: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
+        clear of the object and straight either way, so the two are different sweeps: what one
+        touches first, the other lets go of last and elsewhere.
+
+    Raises
+    ------
+    InputError
+        If a number or the direction cannot be.
+    """
+
+    stations: int = 200
+    start: float | None = None
+    stop: float | None = None
+    direction: Direction = "left"
+
+    def __post_init__(self) -> None:
+        stations = whole("sweep.stations", self.stations, 2, MOST_STATIONS)
+        object.__setattr__(self, "stations", stations)
+        for name in ("start", "stop"):
+            if getattr(self, name) is not None:
+                finite(f"sweep.{name}", getattr(self, name))
+        if self.direction not in get_args(Direction):
+            remedy = "it is where the foot moves to"
+            raise InputError("sweep.direction", repr(self.direction), "left or right", remedy)
+
+    @property
+    def running(self) -> Running:
+        """The column over which it runs."""
+        return "foot_x"
+
+
+@dataclass(frozen=True)
+class Whisk(TurningWay):
+    """A foot that stands while its clamp turns, at equally spaced angles.
+
+    Parameters
+    ----------
+    foot_x : float
+        Where the foot stands, on the line y = 0 [length].
+    start, stop : float
+        First and last angle of the clamp from the upright [rad], positive to the left. Turning to
+        the left is what a sweep to the left is, with the object on that side.
+    stations : int
+        Number of stations, from 2 to 1,000,000.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
+    """
+
+    foot_x: float = 0.0
+    start: float = -1.2
+    stop: float = 0.8
+    stations: int = 200
+
+    def __post_init__(self) -> None:
+        stations = whole("whisk.stations", self.stations, 2, MOST_STATIONS)
+        object.__setattr__(self, "stations", stations)
+        object.__setattr__(self, "foot_x", finite("whisk.foot_x", self.foot_x))
+        for name in ("start", "stop"):
+            said = "it is in rad, from the upright"
+            value = getattr(self, name)
+            value = within(f"whisk.{name}", value, -_MOST_TURNED, _MOST_TURNED, said)
+            object.__setattr__(self, name, value)
+        if abs(self.stop - self.start) < _LEAST:
+            allowed = f"another angle than the start, {self.start:g}"
+            raise InputError(
+                "whisk.stop", self.stop, allowed, "the clamp turns from one to another"
+            )
+
+    @property
+    def direction(self) -> Direction:
+        """Where the clamp turns to."""
+        return "left" if self.stop > self.start else "right"
+
+    @property
+    def running(self) -> Running:
+        """The column over which it runs."""
+        return "clamp_angle"
+
+    def stations_along(self, length: float) -> Floats:
+        """Values of that column."""
+        return np.linspace(self.start, self.stop, self.stations)
+
+    def poses(self, length: float) -> Poses:
+        """The way to the left, dimensionless, over less the angle."""
+        return Straight((self.foot_x / length, 0.0, 0.0), (0.0, 0.0, -1.0))
+
+    def mirrored(self) -> "Whisk":
+        """The mirror image, x to -x."""
+        return Whisk(0.0 - self.foot_x, 0.0 - self.start, 0.0 - self.stop, self.stations)
+
+
+@dataclass(frozen=True)
+class ClampPath(TurningWay):
+    """Any way of the clamp, station by station; between them it goes on monotone cubics (PCHIP).
+
+    Parameters
+    ----------
+    foot_x, foot_y : sequence of float
+        Where the foot is at each station [length].
+    clamp_angle : sequence of float
+        By which the clamp leans to the left of the upright there [rad].
+
+    Raises
+    ------
+    InputError
+        If they are not as long as each other, not finite, or two stations in a row are one pose.
+    """
+
+    foot_x: Sequence[float]
+    foot_y: Sequence[float]
+    clamp_angle: Sequence[float]
+
+    def __post_init__(self) -> None:
+        what = "as many numbers as stations, 2 or more"
+        columns = {
+            name: floats(f"clamp path: {name}", getattr(self, name), (None,), what)
+            for name in ("foot_x", "foot_y", "clamp_angle")
+        }
+        lengths = {name: len(values) for name, values in columns.items()}
+        if len(set(lengths.values())) > 1 or min(lengths.values()) < 2:
+            said = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise InputError("clamp path", f"of {said} stations", what, "give one each a station")
+        if not np.abs(columns["clamp_angle"]).max() <= _MOST_TURNED:
+            worst = float(columns["clamp_angle"][np.abs(columns["clamp_angle"]).argmax()])
+            allowed = f"from {-_MOST_TURNED:.6g} to {_MOST_TURNED:.6g}"
+            raise InputError("clamp path: clamp_angle", worst, allowed, "it is in rad")
+        same = np.flatnonzero(np.abs(np.diff(np.array([*columns.values()]))).max(axis=0) == 0)
+        if same.size:
+            what = f"the same at stations {same[0]} and {same[0] + 1}"
+            raise InputError("clamp path", what, "another pose at each", "leave one out")
+        for name, values in columns.items():
+            object.__setattr__(self, name, tuple(values.tolist()))
+
+    @property
+    def stations(self) -> int:
+        """How many."""
+        return len(self.foot_x)
+
+    @property
+    def direction(self) -> Direction:
+        """Where it goes to by and by: the foot, or if that comes back the clamp's angle."""
+        gone = self.foot_x[0] - self.foot_x[-1] or self.clamp_angle[-1] - self.clamp_angle[0]
+        return "left" if gone >= 0 else "right"
+
+    @property
+    def running(self) -> Running:
+        """The column over which it runs."""
+        return "travel"
+
+    def dimensionless(self, length: float) -> Floats:
+        """Its poses, shape (stations, 3)."""
+        foot = np.array([self.foot_x, self.foot_y]) / length
+        return np.column_stack([*foot, self.clamp_angle])
+
+    def stations_along(self, length: float) -> Floats:
+        """Values of that column: a turn counts as far as it takes the tip [length]."""
+        return travelled(self.dimensionless(length)) * length
+
+    def poses(self, length: float) -> Poses:
+        """The way, dimensionless, over less what it has travelled."""
+        given = self.dimensionless(length)
+        return Through(tuple((-travelled(given)).tolist()), tuple(map(tuple, given.tolist())))
+
+    def mirrored(self) -> "ClampPath":
+        """The mirror image, x to -x."""
+        x, angle = (-np.array(values) for values in (self.foot_x, self.clamp_angle))
+        return ClampPath(x.tolist(), self.foot_y, angle.tolist())
