@@ -40,7 +40,7 @@ def verify(
 
         from compare.show.html import html
         from compare.verify import record
-        from compare.verify.page import drawn, peer_table, summary, verdict, verified
+        from compare.verify.page import drawn, peer_blocks, summary, verdict, verified
         from compare.verify.peers import CASES
 
         rows, given = [], record.sources()
@@ -55,7 +55,7 @@ def verify(
                     others += case()
                     advance()
         found = verdict(rows)
-        terminal.show(summary(rows), found, *([peer_table(others)] if others else []))
+        terminal.show(summary(rows), found, *(peer_blocks(others) if others else ()))
         terminal.keep(folder / "report.html", html(verified(rows, others)))
         terminal.keep(folder / "verify.png", drawn(rows))
         terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))

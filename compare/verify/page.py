@@ -30,7 +30,7 @@ def verified(rows: Sequence[Row], peers: Sequence[PeerRow] = ()) -> Document:
         *(Tile(state, str(_count(rows, state)), f"of {len(rows)} numbers") for state in _COLOURS),
     ]
     picture = Picture("verify", {_CAPTION: partial(drawn, rows)}, _CAPTION)
-    others = [Section("peers", "Peers' own cases", [peer_table(peers), _reasons(peers)])]
+    others = [Section("peers", "Peers' own cases", [*peer_blocks(peers), _reasons(peers)])]
     return Document(
         "Checked by strangers",
         "What others printed, measured or derived, beside what is computed here.",
@@ -110,19 +110,22 @@ def drawn(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-def peer_table(peers: Sequence[PeerRow]) -> Table:
-    """One line a number of theirs."""
-    head = ("peer", "case and number", "published", "its engine here", "exact", "our chain")
+def peer_blocks(peers: Sequence[PeerRow]) -> tuple[Table, Items]:
+    """One line a number of theirs, and what could not be run."""
+    head = ("peer and number", "published", "theirs here", "exact", "our chain")
     lines = [
         (
-            *(row.peer, f"{row.case}: {row.what}", row.published, row.run, f"{row.exact:.7g}"),
-            "" if row.mujoco is None else f"{row.mujoco:.4g}",
+            *(f"{row.peer}: {row.what}", row.published[:11], _number(row.run)),
+            *(_number(row.exact), _number(row.mujoco)),
         )
         for row in peers
     ]
-    return Table(
-        "What peers publish of their own cases, and what is found here", head, lines, (0, 1, 3)
-    )
+    table = Table("What peers publish of their own cases, and what is found here", head, lines)
+    return table, Items(list(dict.fromkeys(filter(None, (row.trouble for row in peers)))))
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.7g}"
 
 
 def _reasons(peers: Sequence[PeerRow]) -> Items:

@@ -27,7 +27,8 @@ class PeerRow:
     case: str
     what: str
     published: str  # by the peer, with its own engine
-    run: str  # the same engine on this machine; or why it was not run
+    run: float | None  # the peer's own code on this machine
+    trouble: str  # why there is none
     exact: float
     mujoco: float | None  # of the chain, with as many segments; none where it has no such model
     why: str = ""
@@ -37,14 +38,15 @@ def _tip(load: float, segments: int, clamp: _Clamp = "second-order") -> tuple[fl
     return load_tip(load, Settings(segments=segments, clamp=clamp), Beam(radius=0.0))
 
 
-def _run(distribution: str, number: Callable[[], float]) -> str:
-    """What an engine gives here; a line if it is missing or gives up."""
+def _run(distribution: str, number: Callable[[], float]) -> tuple[float | None, str]:
+    """What a peer's code gives here; a line if it is missing or gives up."""
     try:
-        return f"{number():.10g}"
+        return number(), ""
     except ImportError as error:
-        return f"not run: {error.name or distribution} is not installed"
+        missing = error.name or distribution
+        return None, f"{missing} is not installed: pip install {distribution}"
     except Exception as error:  # whatever another's engine does
-        return f"failed: {' '.join(str(error).split())[:80]}"
+        return None, f"{distribution} failed: {' '.join(str(error).split())[:80]}"
 
 
 def _cosseratbench_cantilever() -> list[PeerRow]:
@@ -66,7 +68,7 @@ def _cosseratbench_cantilever() -> list[PeerRow]:
     printed = {"mujoco": "0.0740595", "pyelastica": "0.073"}
     return [
         PeerRow("cosseratbench", case, f"error of the tip, {solver}", said,
-                _run("cosseratbench", partial(of, solver)), exact, ours, why)
+                *_run("cosseratbench", partial(of, solver)), exact, ours, why)
         for solver, said in printed.items()
     ]  # fmt: skip
 
@@ -95,9 +97,9 @@ def _cosseratbench_twist() -> list[PeerRow]:
             PeerRow(
                 "cosseratbench",
                 "twist",
-                f"critical moment at a tension of {tension:g}",
+                f"critical moment at tension {tension:.2g}",
                 published,
-                _run("cosseratbench", theirs),
+                *_run("cosseratbench", theirs),
                 float(brentq(_buckles, *between, args=(tension,), xtol=1e-10)),
                 None,
                 "a rod in space integrated; PyElastica reaches 0.978, 0.989, 0.991 of it",
@@ -121,8 +123,9 @@ def _cosseratbench_capstan() -> list[PeerRow]:
         return float(import_module("cosseratbench.experiments.capstan").holding_overhang(friction))
 
     return [
-        PeerRow("cosseratbench", "capstan", "overhang that holds, m", "1.26 exp(mu pi) 0.15",
-                _run("cosseratbench", theirs), exact, None, "no model here lies round a cylinder")
+        PeerRow("cosseratbench", "capstan", "overhang that holds [m]", "0.48506",
+                *_run("cosseratbench", theirs), exact, None,
+                "published as 1.26 exp(mu pi) 0.15; no model here lies round a cylinder")
     ]  # fmt: skip
 
 
@@ -132,8 +135,8 @@ def _exudyn() -> list[PeerRow]:
     exact = rods.rectangle(2.0, 0.1, 0.1, 2.07e11, 0.0, [0.0, -1293750.0, 0.0])["x"]
     stretch = "the chain does not stretch, which makes 3.0e-4"
     return [
-        PeerRow("Exudyn", "ANCFcantileverTest", f"x of the tip, {elements} elements, m", said,
-                _run("exudyn", partial(_exudyn_tip, elements)), exact,
+        PeerRow("Exudyn", "ANCFcantileverTest", f"x of the tip, {elements} elements [m]", said,
+                *_run("exudyn", partial(_exudyn_tip, elements)), exact,
                 -2 * _tip(3.0, elements)[1], stretch)
         for elements, said in printed.items()
     ]  # fmt: skip
@@ -170,8 +173,8 @@ def _pyelastica() -> list[PeerRow]:
     exact = rods.bend(1.0, 45.0, 6.0, stiff, bending)["z"]
     other = rods.bend(1.0, 45.0, 6.0, stiff, [modulus * 2 * inertia, *bending[1:]])["z"]
     return [
-        PeerRow("PyElastica", "CantileverTransversalLoadCase", "z of the tip, 400 elements, m",
-                "0.530065092", "not run: 2e6 steps", exact, None,
+        PeerRow("PyElastica", "CantileverTransversalLoadCase", "z of the tip, 400 elements [m]",
+                "0.530065092", None, "PyElastica is not run: 2e6 steps", exact, None,
                 f"1.5 % off the rod of its own stiffnesses; with the script's G {other:.4f}, 0.2 %")
     ]  # fmt: skip
 
@@ -190,8 +193,8 @@ def _newton() -> list[PeerRow]:
     )
     apart, chain = (max(abs(one / of[0] - 1) for one in of) for of in (exact, ours))
     return [
-        PeerRow("Newton", "cable_bend_stiffness", "how far deflection times stiffness varies",
-                "below 0.10", "not run: python -m newton.examples cable_bend_stiffness --test",
+        PeerRow("Newton", "cable_bend_stiffness", "deflection times stiffness varies by",
+                "< 0.10", None, "Newton is not run: newton.examples cable_bend_stiffness",
                 apart, chain, "the large rotation alone; Newton's test allows fifty times as much")
     ]  # fmt: skip
 

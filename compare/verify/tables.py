@@ -14,6 +14,7 @@ from analytic import (
     Beam,
     Case,
     Sweep,
+    Whisk,
     find_events,
     named_case,
     solve_contact,
@@ -22,7 +23,7 @@ from analytic import (
 from analytic.problem.files import write_whole
 from analytic.space import FootPath, SpatialCase, ellipsoid, solve_space, sphere
 
-VERSION = "1"
+VERSION = "2"
 _LICENCE = "MIT"
 _SOURCE = "vibrissa-testbed: elastica in elliptic integrals with E I = L = 1"
 _THIN = Beam(radius=0.0)
@@ -30,6 +31,14 @@ _NUMBERS = "%.13e"  # 14 digits
 _FRICTION = {"free of friction": 0.0, "held back": 0.2, "driven": -0.2}
 _ANGLES = np.deg2rad(np.arange(40, -41, -4))
 _STATIONS = 40
+_CURVED = (
+    0.9,
+    0.95,
+    1.1,
+)  # towards the catenary: it stays on the near side, or lies down on the other
+_LEANING = -0.2, 0.2  # the clamp [rad]
+# Where a foot stands [L] so that a whisk starts clear of the contour.
+_FEET = {"catenary": 0.5, "parabola": 0.0, "two-circles": 0.0, "shallow-catenary": 1.5}
 _COLUMNS = Path(__file__).with_name("columns.csv")  # their units and signs
 _SAID = ("status", "residual", "stability")  # of the numbers' quality
 _PRIME, _BASIS, _WORD = 0x100000001B3, 0xCBF29CE484222325, 2**64  # of the FNV-1a hash
@@ -82,6 +91,21 @@ def _parts() -> Iterator[tuple[str, pd.DataFrame]]:
         happened = {event: asdict(found) for event, found in events if found is not None}
         table = pd.DataFrame(list(happened.values()))
         yield "event", _labelled(table, {"case": case, "event": list(happened)})
+    for number, curvature in enumerate(_CURVED):
+        beam = Beam(radius=0.0, natural_curvature=curvature)
+        table = solve_sweep(Case(beam, _PROFILES["catenary"], Sweep(stations=_STATIONS))).table
+        labels = {"case": f"catenary {number}", "natural_curvature": curvature}
+        yield "curved", _labelled(table, labels | {"station": range(len(table))})
+    for case, profile in _PROFILES.items():
+        for angle in _LEANING:
+            swept = Case(_THIN, profile, Sweep(stations=_STATIONS), clamp_angle=angle)
+            table = solve_sweep(swept).table
+            labels = {"case": case, "kind": "left" if angle > 0 else "right", "clamp_angle": angle}
+            yield "leaning", _labelled(table, labels | {"station": range(len(table))})
+        table = solve_sweep(
+            Case(_THIN, profile, Whisk(_FEET.get(case, 0.0), stations=_STATIONS))
+        ).table
+        yield "whisking", _labelled(table, {"case": case, "station": range(len(table))})
     for case, body in _BODIES.items():
         path = FootPath([[1.3, 0.3], [-0.2, 0.1]], tangent=(0.1, 1, 0.05), stations=_STATIONS)
         table = solve_space(SpatialCase(_THIN, body=body, path=path)).table

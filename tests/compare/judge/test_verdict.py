@@ -106,6 +106,19 @@ def test_a_stretch_of_either_side_that_is_not_trusted_is_said(side, count):
     found = compare(**sweeps)
     assert f"{count} touches again, foot_x {at[0]:.4g} to {at[-1]:.4g} L" in words(found)
     assert found.agrees or count > 1
+    # Where it is a failure already, the candidate's is not said twice.
+    assert sum("touches again" in line for line in (*found.failures, *found.remarks)) == 1
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_a_reference_without_trust_is_said_beside_a_candidate_that_fails_there(both):
+    exact = exact_sweep("catenary")
+    status = np.full(200, "ok", dtype=object)
+    status[90:110] = "touches again"
+    untrusted = changed(exact, status=status)
+    notes = compare(untrusted if both else exact, untrusted).remarks
+    assert sum("the reference is not to be trusted" in note for note in notes) == both
+    assert not any("the candidate is not to be trusted" in note for note in notes)
 
 
 @pytest.mark.parametrize("side", ["reference", "candidate"])

@@ -13,7 +13,7 @@ from compare.verify.tables import write_tables
 
 HERE = Path(__file__).parents[3] / "docs" / "examples" / "reference"
 TABLES = HERE / "tables"
-NAMES = ("contact", "friction", "sweep", "event", "space")
+NAMES = ("contact", "friction", "sweep", "event", "curved", "leaning", "whisking", "space")
 PLANTED = 100
 FOUND = 95  # at least
 
