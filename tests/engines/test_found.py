@@ -7,7 +7,7 @@ import textwrap
 import pytest
 
 from analytic import InputError, named_case
-from compare.commands import many
+from compare.commands import pipeline
 from compare.read.case import load_job
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
@@ -166,14 +166,14 @@ def test_where_none_gives_readings_there_is_one_line(odd_engines, tmp_path):
 
 @pytest.mark.slow
 def test_an_interrupt_keeps_the_engines_that_are_done(odd_engines, tmp_path, monkeypatch):
-    real = many.sweep_apart
+    real = pipeline.sweep_apart
 
     def interrupted(name, *rest):
         if name == "hangs":
             raise KeyboardInterrupt
         return real(name, *rest)
 
-    monkeypatch.setattr(many, "sweep_apart", interrupted)
+    monkeypatch.setattr(pipeline, "sweep_apart", interrupted)
     command = ("run", "tip-only", "--segments", 5, "--stations", 20, "--out", "out")
     done = vibrissa(*command, "--engine", "mujoco,hangs", cwd=tmp_path)
     assert done.returncode != 0
