@@ -147,7 +147,18 @@ class Case:
         return -along / self.beam.length if self.sweep.running == "travel" else -along
 
     def running_at(self, p: float) -> float:
-        """What the sweep runs over, at a parameter of the way to the left that solves it."""
+        """What the sweep runs over, at a parameter of the way to the left that solves it.
+
+        Parameters
+        ----------
+        p : float
+            The parameter.
+
+        Returns
+        -------
+        float
+            A foot position or a travel [length], or an angle of the clamp [rad].
+        """
         if self.sweep.running == "travel":
             return -p * self.beam.length
         turned = p if self.direction == "left" else -p

@@ -218,7 +218,18 @@ class ClampPath(TurningWay):
         return "travel"
 
     def dimensionless(self, length: float) -> Floats:
-        """Its poses, shape (stations, 3)."""
+        """Its poses over the vibrissa's length.
+
+        Parameters
+        ----------
+        length : float
+            Of the vibrissa [length].
+
+        Returns
+        -------
+        array, shape (stations, 3)
+            Foot and angle [L, L, rad].
+        """
         foot = np.array([self.foot_x, self.foot_y]) / length
         return np.column_stack([*foot, self.clamp_angle])
 

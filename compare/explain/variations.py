@@ -1,11 +1,12 @@
 """What the closed form alone knows of a disagreement: no simulator in it."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Case, Readings, polygon, solve_sweep, with_friction
+from analytic import CLAMP_READINGS, Case, InputError, Readings, polygon, solve_sweep, with_friction
 from analytic.problem.arrays import Floats
 from analytic.problem.quantities import QUANTITIES
 
@@ -21,7 +22,7 @@ VARIED = (
     "natural_curvature",
     "clamp_angle",
 )
-"""What may differ in any case; a cone's `tip_radius` comes beside them."""
+"""What may differ in any case, but where it cannot; a cone's `tip_radius` comes beside them."""
 
 
 def variations(case: Case) -> dict[str, Readings]:
@@ -50,7 +51,9 @@ def variations(case: Case) -> dict[str, Readings]:
             return with_friction(case, STEP)
         return solve_sweep(QUANTITIES[name].larger(case, STEP * units[name]))
 
-    found = {name: swept(name) for name in VARIED}
+    found = {name: swept(name) for name in VARIED if name != "clamp_angle"}
+    with suppress(InputError):  # past a corner, a clamp that leans may stand over the object
+        found["clamp_angle"] = swept("clamp_angle")
     exact = solve_sweep(case)
     if beam.radius > 0 and np.isfinite(tip_radius):
         found["tip_radius"] = swept("tip_radius")

@@ -1,7 +1,6 @@
 """A sweep in MuJoCo: from case and settings to a walk through all stations."""
 
 import time
-from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
@@ -46,7 +45,7 @@ def follow(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Go to all stations, one after the other."""
-    doubts: Counter[str] = Counter()
+    doubts: dict[str, int] = {}
     about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
     places = {"foot_x": case.foot_x}
     recorder = Recorder(case, source, about, lambda: walk.events, places, begun=begun)
@@ -54,7 +53,7 @@ def follow(
     def row_at(foot_x: float) -> dict[str, Any]:
         walk.go_to(foot_x)
         if walk.doubt:
-            doubts[walk.doubt] += 1
+            doubts[walk.doubt] = doubts.get(walk.doubt, 0) + 1
         return walk.row()
 
     return visit(case.foot_x / case.beam.length, row_at, recorder, advance, keep)

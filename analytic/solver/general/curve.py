@@ -14,7 +14,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses
+from analytic.problem.poses import Poses, Straight
 from analytic.solver.general.states import INSIDE, Vibrissa, balance
 
 _NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
@@ -150,9 +150,13 @@ class EquilibriumCurve(NamedTuple):
         return found
 
     def turning(self, here: Point, new: Point) -> float:
-        """By how much the curve turns between two points."""
+        """By how much the curve turns between two points.
+
+        Without a straight way of the clamp: how fast that goes jumps with the contour's curvature.
+        """
+        seen = slice(_P if isinstance(self.poses, Straight) else None)
         scale = self._scale(here.z)
-        a, b = here.direction / scale, new.direction / scale
+        a, b = ((point.direction / scale)[seen] for point in (here, new))
         return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))
 
     def _scale(self, z: Floats) -> Floats:

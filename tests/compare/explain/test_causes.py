@@ -61,8 +61,8 @@ def restless(case: Case) -> Readings:
         (altered(force_y=lambda f: 1.01 * f), "gain of force_y", 1.0),
         (altered(force_x=lambda f: f + 0.2), "zero of force_x", None),
         (noisy, "noise: differences jump", None),
-        # A clamp that leans by a degree does nearly the same.
-        (noisy_and_stiff, "either flexural rigidity", 3.0),
+        # A clamp that leans by a degree does nearly the same, on the catenary.
+        (noisy_and_stiff, ("either flexural rigidity", "flexural rigidity"), 3.0),
         (restless, "unrest: the stations are out of balance by 5.0e-02", None),
     ],
 )
