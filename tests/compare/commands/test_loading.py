@@ -36,7 +36,7 @@ profile.a = "wide"
     [
         (["--help"], 0),
         (["run", "--help"], 0),
-        (["list", "cases"], 0),
+        (["list", "studies"], 0),  # the cases that whisk have a first contact, found by scipy
         (["run", "catenry"], 2),
         (["run", "catenary", "--stations", "1"], 2),
         (["analytic", "CASE"], 2),
