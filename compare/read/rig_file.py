@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from analytic import SENSED, InputError
 from compare.read.quantities import Length, Table, validated
@@ -34,6 +34,16 @@ class RigColumns(Table):
     moment_z: RigColumn
 
 
+def _not_negative(value: float) -> float:
+    """After the unit: a plain validator hides a field's own limits."""
+    if value < 0:
+        raise ValueError("must be 0 or more")
+    return value
+
+
+_Stretch = Annotated[Length, AfterValidator(_not_negative)]
+
+
 class RigPasses(Table):
     """How the rows of a file are passes of the foot, and where these are certainly free."""
 
@@ -41,8 +51,8 @@ class RigPasses(Table):
     column: str | None = None
     # The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
     # sensor reads there is its zero, taken off along a straight line from one to the other.
-    free_before: Length = Field(default=0.0, ge=0)
-    free_after: Length = Field(default=0.0, ge=0)
+    free_before: _Stretch = 0.0
+    free_after: _Stretch = 0.0
 
 
 class Rig(Table):
