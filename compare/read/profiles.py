@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field
-
 from analytic import Contour
 from analytic.problem.contours.kinds import CONTOURS
 from compare.read.quantities import Length, PerLength, Point, Points, Table
@@ -14,7 +12,7 @@ class ProfileTable(Table):
     """The object: a kind of contour, and what the function of that kind takes."""
 
     kind: str
-    scale: Length = Field(default=1.0, gt=0)
+    scale: Length = 1.0
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
         """The contour."""

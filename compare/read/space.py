@@ -79,10 +79,10 @@ class SolidTable(BodyTable):
 
     kind: Literal["mesh"]
     file: str
-    scale: Length = Field(default=1.0, gt=0)
+    scale: Length = 1.0
     offset: Position = (0.0, 0.0, 0.0)
     hull: bool = False
-    tolerance: Length = Field(default=0.0, ge=0)
+    tolerance: Length = 0.0
 
     def build(self, folder: Path) -> Body:
         """The body in the file."""

@@ -82,6 +82,9 @@ def test_a_mesh_stands_beside_its_case_file(tmp_path):
     assert np.abs(case.body.vertices).max() == pytest.approx(0.12, rel=1e-2)
     with pytest.raises(InputError, match="scale"):
         loaded(text.replace('scale = "1 mm"\n', "scale = 1\n"), tmp_path)
+    for odd in ('scale = "-1 mm"', 'scale = "1 mm"\ntolerance = "-1 mm"'):
+        with pytest.raises(InputError, match="must be"):
+            loaded(text.replace('scale = "1 mm"', odd), tmp_path)
 
 
 @pytest.mark.parametrize(
