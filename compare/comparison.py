@@ -38,8 +38,6 @@ from compare.validate.stated import Input, Uncertainties
 from compare.validate.validation import Side, Validation, validate
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from compare.align.frames import Frame
 
 _EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
@@ -111,16 +109,6 @@ class Comparison(Judged[Readings], Measurement):
             window=self.tolerances.snap_off_window,
         )
         return replace(self, validation=found)
-
-    def plot(self) -> list[Axes]:
-        """Draw the clamp readings of both sweeps over the foot position.
-
-        Returns
-        -------
-        list of matplotlib.axes.Axes
-            One a reading; a notebook shows them.
-        """
-        return self.candidate.plot(self.reference.plot())
 
     def _failures(self) -> Iterator[Failure]:
         return failures(self, self.tolerances, self.noise)

@@ -7,7 +7,7 @@ from typing import get_args
 
 from packaging.requirements import InvalidRequirement, Requirement
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, unknown
 from engines.engine import Engine, Role
 from engines.known import known_engines, own_version
 
@@ -66,9 +66,7 @@ def find_engine(name: str) -> Engine:
     """
     known = known_engines()
     if name not in known:
-        raise InputError(
-            "engine", repr(name), f"one of {', '.join(known)}", "`vibrissa list engines` lists them"
-        )
+        raise unknown("engine", name, known, remedy="`vibrissa list engines` lists them")
     found = _found(name, known[name])
     if found.engine is None or found.trouble is not None:
         raise InputError("engine", repr(name), "installed", found.trouble or "install it")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from importlib.metadata import EntryPoint, entry_points
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, near
 
 GROUP = "vibrissa.engines"
 """The entry points by which other distributions offer engines: ``name = "module:ENGINE"``."""
@@ -15,6 +15,8 @@ _SHIPPED = {
     "dart": "engines.dart.engine:ENGINE",
     "pyelastica": "engines.pyelastica.engine:ENGINE",
 }
+
+_LISTED = "`vibrissa list engines` lists them"
 
 
 def named_engines(names: str) -> list[str]:
@@ -28,7 +30,7 @@ def named_engines(names: str) -> list[str]:
             "engine",
             repr(names),
             f"names between commas, each once, of {', '.join(known)}",
-            "`vibrissa list engines` lists them",
+            near(", ".join(name for name in listed if name not in known), known, _LISTED),
         )
     return listed
 

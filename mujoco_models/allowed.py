@@ -6,7 +6,7 @@ The command line needs no more of the settings before it knows what to do.
 from numbers import Integral, Real
 from typing import Literal, TypeAlias, get_args
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, unknown
 
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
@@ -20,7 +20,7 @@ Limits: TypeAlias = dict[str, tuple[float, float, str]]
 def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
     """Refuse what is none of some words."""
     if value not in allowed:
-        raise InputError(name, repr(value), f"one of {', '.join(allowed)}", "choose one")
+        raise unknown(name, value, allowed)
 
 
 def check_number(

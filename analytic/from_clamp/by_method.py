@@ -11,7 +11,7 @@ from analytic.from_clamp.earlier.sensed import LoadedStations
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import SENSED
-from analytic.problem.errors import InputError
+from analytic.problem.errors import unknown
 from analytic.problem.readings import Readings
 
 
@@ -23,7 +23,7 @@ def reconstruct_earlier(
 ) -> pd.DataFrame:
     """Contact points by one of the methods that were there before the closed form."""
     if method not in METHODS:
-        raise InputError("method", repr(method), f"one of {', '.join(NAMES)}", "choose one")
+        raise unknown("method", method, NAMES)
     chosen = METHODS[method]
     sensed = dimensionless(readings)
     gap = np.isnan(sensed).any(axis=0)

@@ -5,7 +5,7 @@ import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -20,8 +20,10 @@ from analytic.problem.numbers import within
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import FirstTouch, first_touch
+from analytic.problem.shown import Shown
 from analytic.problem.support import (
     Support,
+    beyond_the_paper,
     check_support,
     is_plain,
     require_plain,
@@ -29,12 +31,16 @@ from analytic.problem.support import (
 )
 from analytic.problem.unloaded import Unloaded
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 _MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
 _SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
 
 
-@dataclass(frozen=True)
-class Case:
+@dataclass(frozen=True, repr=False)
+class Case(Shown):
     """What every engine is given: physics only, no numerics.
 
     Parameters
@@ -389,6 +395,43 @@ class Case:
             sweep=sweep,
             **self.support.mirrored()._asdict(),
         )
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the object, the way of the foot, and the vibrissa at rest at its start and end.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            New ones if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With equal scales.
+        """
+        from analytic.problem.case_shown import draw
+
+        if ax is None:
+            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
+
+            ax = plt.figure(layout="constrained").subplots()
+        draw(self, ax)
+        return ax
+
+    def _draw(self, figure: "Figure") -> None:
+        self.plot(figure.subplots())
+
+    def _tiles(self) -> dict[str, object]:
+        from analytic.problem.case_shown import described, ways
+
+        beyond = beyond_the_paper(self.beam, self.support)
+        return {
+            "case": self.name,
+            "object": self.profile.label,
+            "beam": described(self.beam),
+            **{name: f"{value:g}" for name, value in beyond.items()},
+            "stations": ways(self),
+        }
 
     @property
     def _way(self) -> int:

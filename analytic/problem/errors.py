@@ -1,5 +1,7 @@
 """The one exception for input that cannot be used."""
 
+import difflib
+from collections.abc import Iterable
 from pathlib import PurePath
 from typing import TypeVar
 
@@ -53,6 +55,21 @@ def _written(value: object) -> str:
         return text
     except ValueError:  # Python refuses to write thousands of digits
         return "an integer of thousands of digits"
+
+
+def near(word: object, known: Iterable[str], otherwise: str = "choose one") -> str:
+    """What to do about a word that is none of those known: take the one that is nearest."""
+    found = difflib.get_close_matches(str(word), [*known], n=1)
+    return f"did you mean {found[0]}?" if found else otherwise
+
+
+def unknown(
+    name: str, word: object, known: Iterable[str], *, more: str = "", remedy: str = "choose one"
+) -> InputError:
+    """The error for such a word."""
+    known = [*known]
+    allowed = f"one of {', '.join(known)}{more}"
+    return InputError(name, repr(word)[:120], allowed, near(word, known, remedy))
 
 
 def require(name: str, value: object, kind: type[_Kind], remedy: str) -> _Kind:

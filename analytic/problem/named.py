@@ -10,7 +10,7 @@ from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep, Whisk
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.kinds import CONTOURS
-from analytic.problem.errors import InputError
+from analytic.problem.errors import unknown
 
 NAMED_PROFILES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
@@ -96,8 +96,8 @@ def named_case(name: str) -> Case:
         If there is no case of that name.
     """
     if name not in NAMED_TABLES:
-        allowed = f"one of {', '.join(NAMED_TABLES)}, or a TOML file"
-        raise InputError("case", repr(name), allowed, "see `vibrissa list cases`")
+        more, remedy = ", or a TOML file", "see `vibrissa list cases`"
+        raise unknown("case", name, NAMED_TABLES, more=more, remedy=remedy)
     tables = NAMED_TABLES[name]
     return Case(
         Beam(**tables.get("beam", {})),

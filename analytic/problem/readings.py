@@ -1,6 +1,6 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam, Varying
-from analytic.problem.columns import SENSED
+from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
 from analytic.problem.places import Place, row_number
@@ -27,7 +27,6 @@ from analytic.problem.sweep_table import SweepTable, usable
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,6 +66,7 @@ class Readings(SweepTable):
     source: str = "measured"
     provenance: Mapping[str, Any] = field(default_factory=dict)
     sensed: ClassVar[tuple[str, ...]] = SENSED
+    panels: ClassVar[Mapping[str, tuple[str, ...]]] = {name: (name,) for name in CLAMP_READINGS}
 
     def __post_init__(self) -> None:
         from analytic.problem.table import checked_table  # slow to load, and solvers do without
@@ -159,11 +159,6 @@ class Readings(SweepTable):
         """Foot position of the snap-off [length], if the source located it (`provenance`)."""
         value = self.provenance.get("events", {}).get("snap_off")
         return None if value is None else float(value)
-
-    @property
-    def gaps(self) -> int:
-        """Number of stations at which a force or the moment is missing (NaN)."""
-        return int(self.table[list(SENSED)].isna().any(axis=1).sum())
 
     @property
     def bends_left(self) -> bool:
@@ -341,33 +336,6 @@ class Readings(SweepTable):
             beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
             source = metadata.get("source", f"measured, {path.name}")
             return cls.of(content.table, beam, source, metadata.get("provenance"), content.place)
-
-    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw force and moment at the clamp over the foot position.
-
-        Parameters
-        ----------
-        axes : sequence of matplotlib.axes.Axes, optional
-            What ``plot`` of other readings returned, to draw these into.
-
-        Returns
-        -------
-        list of matplotlib.axes.Axes
-            One a reading: ``force_x``, ``force_y``, ``moment_z``.
-        """
-        from analytic.problem.readings_shown import plot
-
-        return plot(self.table, self.beam, self.trusted, self.source, axes)
-
-    def __repr__(self) -> str:
-        from analytic.problem.readings_shown import as_text
-
-        return as_text(self.table, self.beam, self.source, self.gaps, self.beyond_the_paper)
-
-    def _repr_html_(self) -> str:
-        from analytic.problem.readings_shown import as_html
-
-        return as_html(self.table, repr(self))
 
 
 def solved_readings(

@@ -1,76 +1,79 @@
 """How one sweep looks: in a terminal, in a notebook, as a picture."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-import pandas as pd
+import numpy as np
 
-from analytic.problem.arrays import Booleans
-from analytic.problem.beam import Beam, Varying
-from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.shown import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from analytic.problem.sweep_table import SweepTable
 
 _ROWS = 8
-_SI = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
-def as_text(
-    table: pd.DataFrame, beam: Beam, source: str, gaps: int, beyond: Mapping[str, Varying]
-) -> str:
+def as_text(readings: "SweepTable") -> str:
     """A sweep in a few lines: how long, how large, which phases."""
-    foot_x = table["foot_x"]
-    largest = ", ".join(f"{name} {table[name].abs().max():.4g}" for name in CLAMP_READINGS)
+    beam, running = readings.beam, readings.running_values
+    beyond = "".join(f", {name} {value:g}" for name, value in readings.beyond_the_paper.items())
+    loads = [name for name in readings.sensed if not name.startswith("foot")]
+    sizes = (f"{name} {np.abs(readings.table[name]).max():.4g}" for name in loads)
     lines = [
-        f"Readings ({source}): {len(table)} stations, "
-        f"foot_x from {foot_x.iloc[0]:.6g} to {foot_x.iloc[-1]:.6g}",
+        f"{type(readings).__name__} ({readings.source}): {len(running)} stations, "
+        f"{readings.running} from {running[0]:.6g} to {running[-1]:.6g}",
         f"  beam{' (SI)' if beam.si else ''}: length {beam.length:g}, "
-        f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}"
-        + "".join(f", {name} {value:g}" for name, value in beyond.items()),
-        f"  largest magnitudes: {largest}",
+        f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}{beyond}",
+        f"  largest magnitudes: {', '.join(sizes)}",
     ]
-    for name in ("phase", "status"):
-        if name in table:
-            counts = table[name].value_counts(sort=False).items()
-            lines.append(f"  {name}: {', '.join(f'{word} {count}' for word, count in counts)}")
-    if gaps:
-        lines.append(f"  gaps: {gaps} stations without a force or the moment")
+    lines += [f"  {name}: {said}" for name, said in counts(readings).items()]
+    if readings.gaps:
+        lines.append(f"  gaps: {readings.gaps} stations without a force or the moment")
     return "\n".join(lines)
 
 
-def as_html(table: pd.DataFrame, text: str) -> str:
+def counts(readings: "SweepTable") -> dict[str, str]:
+    """How many stations are in which phase, and of which status."""
+    return {
+        name: ", ".join(
+            f"{word} {n}" for word, n in readings.table[name].value_counts(sort=False).items()
+        )
+        for name in ("phase", "status")
+        if name in readings.table
+    }
+
+
+def as_html(readings: "SweepTable") -> str:
     """The same for a notebook, with the first and last rows."""
-    rows = table.to_html(max_rows=_ROWS, float_format="{:.6g}".format, border=0)
-    return f"<pre>{escape(text)}</pre>{rows}"
+    rows = readings.table.to_html(max_rows=_ROWS, float_format="{:.6g}".format, border=0)
+    return f"<pre>{escape(as_text(readings))}</pre>{rows}"
 
 
-def plot(
-    table: pd.DataFrame,
-    beam: Beam,
-    trusted: Booleans,
-    source: str,
-    axes: "Sequence[Axes] | None" = None,
-) -> "list[Axes]":
-    """Force and moment at the clamp over the foot position."""
-    if axes is None:
-        import matplotlib.pyplot as plt  # a third of a second, and most users draw nothing
-
-        figure, axes = plt.subplots(len(CLAMP_READINGS), sharex=True, layout="constrained")
-        axes[-1].set_xlabel(_with_unit("foot_x", beam))
-        for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-            ax.set_ylabel(_with_unit(name, beam))
-        figure.align_ylabels()
-    foot_x, label = table["foot_x"], source.replace("$", r"\$")
-    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-        ax.plot(foot_x, table[name], ".-", markersize=3, linewidth=0.8, label=label)
-        if not trusted.all():
-            there = table[name][~trusted]
-            ax.plot(foot_x[~trusted], there, "x", color="tab:red", label="not trusted")
-    axes[0].legend()
+def new_axes(figure: "Figure", readings: "SweepTable") -> "list[Axes]":
+    """Axes for what the clamp reads, one above the other."""
+    axes: Sequence[Axes] = figure.subplots(len(readings.panels), sharex=True)
+    axes[-1].set_xlabel(with_unit(readings.running, readings.beam))
+    for ax, label in zip(axes, readings.panels, strict=True):
+        ax.set_ylabel(with_unit(label, readings.beam))
+    figure.align_ylabels()
     return list(axes)
 
 
-def _with_unit(name: str, beam: Beam) -> str:
-    return f"{name} [{_SI[name]}]" if beam.si else name
+def draw(readings: "SweepTable", axes: "Sequence[Axes]") -> None:
+    """Force and moment at the clamp along the sweep."""
+    along, trusted = readings.running_values, readings.trusted
+    label = readings.source.replace("$", r"\$")
+    for ax, names in zip(axes, readings.panels.values(), strict=True):
+        for name in names:
+            values = readings.values(name)
+            said = label if len(names) == 1 else f"{label}: {name}"
+            ax.plot(along, values, ".-", markersize=3, linewidth=0.8, label=said)
+            if not trusted.all():
+                there = along[~trusted], values[~trusted]
+                ax.plot(*there, "x", color="tab:red", label="not trusted")
+    for ax in axes if len(readings.panels) < len(readings.sensed) - 1 else axes[:1]:
+        ax.legend(fontsize="small")

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS, WORDS, units
-from analytic.problem.errors import InputError
+from analytic.problem.errors import unknown
 from analytic.problem.readings import Readings, solved_readings
 
 DIVERGED = {"phase": "free", "status": "diverged"}
@@ -108,5 +108,5 @@ class Recorder(AnyRecorder[Readings]):
 def _number(column: str, word: str) -> int:
     allowed = WORDS[column]
     if word not in allowed:
-        raise InputError(f"column {column}", repr(word), f"one of {', '.join(allowed)}", "fix it")
+        raise unknown(f"column {column}", word, allowed)
     return allowed.index(word)

@@ -1,6 +1,6 @@
 """What readings of a sweep have in common, in the plane and in space: a table, and its file."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Varying
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
+from analytic.problem.shown import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 @contextmanager
@@ -26,7 +29,7 @@ def usable(path: Path) -> Iterator[None]:
         raise InputError(f"readings file {path}", "unusable", "one sweep", str(error)) from error
 
 
-class SweepTable:
+class SweepTable(Shown):
     """A row a station, in the units of a beam."""
 
     table: "pd.DataFrame"
@@ -34,6 +37,7 @@ class SweepTable:
     source: str
     provenance: Mapping[str, Any]
     sensed: ClassVar[tuple[str, ...]]  # what the clamp knows
+    panels: ClassVar[Mapping[str, tuple[str, ...]]]  # columns that are drawn, by label
 
     def _check_kinds(self) -> None:
         import pandas as pd  # slow to load, and solvers do without
@@ -79,6 +83,69 @@ class SweepTable:
         if "status" in self.table:
             fine &= says(self.table["status"], "ok")
         return np.asarray(fine, dtype=bool)
+
+    @property
+    def gaps(self) -> int:
+        """Number of stations at which a force or the moment is missing (NaN)."""
+        return int(self.table[list(self.sensed)].isna().any(axis=1).sum())
+
+    @property
+    def running(self) -> str:
+        """The column over which the sweep runs."""
+        raise NotImplementedError
+
+    @property
+    def running_values(self) -> Floats:
+        """Where along the sweep its stations are, shape (stations,)."""
+        return self.values(self.running)
+
+    @property
+    def beyond_the_paper(self) -> Mapping[str, Varying]:
+        """What of vibrissa, clamp and contact is not the paper's, by what it is."""
+        return {}
+
+    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+        """Draw force and moment at the clamp along the sweep.
+
+        Parameters
+        ----------
+        axes : sequence of matplotlib.axes.Axes, optional
+            What ``plot`` of other readings returned, to draw these into.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One a reading, ``force_x``, ``force_y``, ``moment_z``; in space ``force`` and
+            ``moment``, each with three components.
+        """
+        from analytic.problem.readings_shown import draw, new_axes
+
+        if axes is None:
+            from matplotlib import pyplot as plt  # a third of a second, and most draw nothing
+
+            axes = new_axes(plt.figure(layout="constrained"), self)
+        draw(self, axes)
+        return list(axes)
+
+    def _draw(self, figure: "Figure") -> None:
+        from analytic.problem.readings_shown import new_axes
+
+        self.plot(new_axes(figure, self))
+
+    def _tiles(self) -> Mapping[str, object]:
+        from analytic.problem.readings_shown import counts
+
+        return {"source": self.source, "stations": len(self.table), **counts(self)}
+
+    def _below(self) -> str:
+        from analytic.problem.readings_shown import as_html
+
+        return as_html(self)
+
+    def __repr__(self) -> str:
+        from analytic.problem.readings_shown import as_text
+
+        return as_text(self)
 
     def write(self, path: str | Path) -> Path:
         """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.

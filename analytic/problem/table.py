@@ -1,5 +1,6 @@
 """What may stand in the table of one sweep."""
 
+import difflib
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -11,7 +12,7 @@ import pyarrow.compute as pc
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.columns import CONTACT, ODD, SENSED, WORDS
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, unknown
 from analytic.problem.places import Place, row_number
 
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
@@ -58,10 +59,12 @@ def check_columns(table: pd.DataFrame, sensed: tuple[str, ...], source: str) -> 
     """Refuse a table without what a clamp senses, or with two columns of one name."""
     missing = [name for name in sensed if name not in table]
     if missing:
-        there = f"{', '.join(map(str, table.columns))}"[:120] or "none"
-        allowed = f"at least {', '.join(sensed)}"
+        names = [*map(str, table.columns)]
+        there, allowed = ", ".join(names)[:120] or "none", f"at least {', '.join(sensed)}"
+        alike = {name: difflib.get_close_matches(name, names, n=1) for name in missing}
+        named = [f"{name} (is it {found[0]}?)" if found else name for name, found in alike.items()]
         raise InputError(
-            f"columns of the readings ({source})", there, allowed, f"add {', '.join(missing)}"
+            f"columns of the readings ({source})", there, allowed, f"add {', '.join(named)}"
         )
     twice = table.columns[table.columns.duplicated()]
     if len(twice):
@@ -136,11 +139,11 @@ def check_words(
     """Refuse a word that may not stand in a column."""
     if isinstance(column.dtype, pd.StringDtype) and set(column.unique()) <= set(allowed):
         return
-    unknown = ~column.astype(str).isin(allowed).to_numpy()
-    if unknown.any():
-        row = int(np.argmax(unknown))
-        word, these = f"{str(column.iloc[row])!r}"[:120], f"one of {', '.join(allowed)}"
-        raise InputError(f"column {name}, {place(row)},", word, these, "fix the column or drop it")
+    odd = ~column.astype(str).isin(allowed).to_numpy()
+    if odd.any():
+        row = int(np.argmax(odd))
+        where, word = f"column {name}, {place(row)},", str(column.iloc[row])
+        raise unknown(where, word, allowed, remedy="fix the column or drop it")
 
 
 def _wrong_type(name: str, kind: object) -> InputError:

@@ -6,19 +6,21 @@ Will, Steigenberger and Behn, section 4.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
-from analytic.problem.columns import COLUMNS, WORDS
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
+from analytic.problem.shown import Shown
 from analytic.problem.support import Support, check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
@@ -29,6 +31,10 @@ from analytic.solver.general.path import follow
 from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -48,8 +54,8 @@ class Event:
     status: str
 
 
-@dataclass(frozen=True)
-class Events:
+@dataclass(frozen=True, repr=False)
+class Events(Shown):
     """The events of a sweep in the direction of decreasing foot_x; None where there is none.
 
     If Phases A and B take turns more than once, as they may on an object that is flat below,
@@ -72,6 +78,47 @@ class Events:
     snap_off: Event
     back_start: Event | None = None
     back_end: Event | None = None
+
+    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+        """Mark the events in the clamp readings over the foot position.
+
+        Parameters
+        ----------
+        axes : sequence of matplotlib.axes.Axes, optional
+            What ``plot`` of readings returned, to mark them there.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One a reading: ``force_x``, ``force_y``, ``moment_z``.
+        """
+        if axes is None:
+            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
+
+            axes = self._new_axes(plt.figure(layout="constrained"))
+        for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+            for i, (event, at) in enumerate(self._there().items()):
+                said = event.replace("_", " ")
+                ax.plot(at.foot_x, getattr(at, name), "D", color=f"C{i}", label=said)
+        axes[0].legend(fontsize="small", ncols=2)
+        return list(axes)
+
+    def _there(self) -> dict[str, Event]:
+        return {name: at for name, at in vars(self).items() if at and math.isfinite(at.foot_x)}
+
+    @staticmethod
+    def _new_axes(figure: "Figure") -> "Sequence[Axes]":
+        axes: Sequence[Axes] = figure.subplots(len(CLAMP_READINGS), sharex=True)
+        for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+            ax.set_ylabel(name)
+        axes[-1].set_xlabel("foot_x")
+        return axes
+
+    def _draw(self, figure: "Figure") -> None:
+        self.plot(self._new_axes(figure))
+
+    def _tiles(self) -> dict[str, object]:
+        return {name: f"{at.foot_x:.5g}" for name, at in self._there().items()}
 
 
 def find_events(

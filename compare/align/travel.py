@@ -14,11 +14,7 @@ _SAME_TANGENT = 1e-6
 
 def travel_of(readings: SpatialReadings) -> Floats:
     """How far along its path the foot is at the stations [length]."""
-    recorded = readings.values("travel")
-    if np.isfinite(recorded).all():
-        return recorded
-    steps = np.linalg.norm(np.diff(readings.values(*FOOT), axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    return readings.running_values
 
 
 def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, unknown
 from analytic.problem.files import regular_file
 from compare.commands.kinds import For, require_use
 from compare.commands.options import AGREES, DISAGREES, Changes, flag, option, out_folder
@@ -116,9 +116,7 @@ def _path(model: str) -> Path:
 
     shipped = shipped_models()
     if model not in shipped and not Path(model).suffix:
-        raise InputError(
-            "MODEL", repr(model), f"a file, or one of {', '.join(shipped)}", "name one of them"
-        )
+        raise unknown("MODEL", model, shipped, more=", or a file")
     return regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
 
 

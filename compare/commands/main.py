@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, near
 from compare.commands.calibrate import calibrate
 from compare.commands.compare import compare
 from compare.commands.export import export
@@ -112,7 +112,10 @@ def _in_words(error: Exception) -> str:
         case InputError():
             return str(error)
         case TyperException():
-            return f"{error.format_message().rstrip('.')}; see `vibrissa --help`"
+            said = error.format_message().rstrip(".").replace("Value error, ", "")
+            given, _, known = said.partition(" is not one of ")  # words in single quotes
+            remedy = near(given.split("'")[-2], known.split("'")[1::2], "") if known else ""
+            return f"{said}; {remedy or 'see `vibrissa --help`'}"
         case OSError():
             place = "a file" if error.filename is None else error.filename
             return f"{place}: {error.strerror or error}; choose another folder with --out"

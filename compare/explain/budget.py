@@ -55,7 +55,7 @@ _LEFT, _UNSURE = 0.1, 1 / 3
 """What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Budget(Parted):
     """What the disagreement of two sweeps is made of; ``corner`` only if there are sharp ones.
 

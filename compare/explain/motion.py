@@ -46,7 +46,7 @@ _STIFFER = 4  # times the contact stiffness, which half a time step stands as we
 _LEFT = 0.1  # of the disagreement; what may stay unexplained
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MotionBudget(Parted):
     """What the disagreement of a sweep in motion with the closed form is made of.
 

@@ -2,15 +2,19 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.shown import Shown
 from compare.measure.disagreement import before_snap_off, rms
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SAFETY = 1.25
 """Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
@@ -29,8 +33,8 @@ class Part:
     uncertainty: float
 
 
-@dataclass(frozen=True)
-class Parted:
+@dataclass(frozen=True, repr=False)
+class Parted(Shown):
     """What every disagreement that was taken apart has."""
 
     parts: dict[str, dict[str, Part]]  # by name and reading
@@ -47,6 +51,27 @@ class Parted:
     def left(self) -> Part:
         """What stays unexplained, of the reading where it is most."""
         return max(self.parts["unexplained"].values(), key=lambda part: part.rms)
+
+    def _tiles(self) -> dict[str, object]:
+        left = self.left
+        return {
+            "closes": self.closes,
+            "largest part": self.blame,
+            "unexplained": f"{left.rms:.1e} +- {left.uncertainty:.1e}",
+            "disagreement": ", ".join(f"{n} {x:.1e}" for n, x in self.disagreement.items()),
+            "stations": self.stations,
+        }
+
+    def _draw(self, figure: "Figure") -> None:
+        ax, names = figure.subplots(), [*self.parts][::-1]
+        rows, wide = np.arange(len(names)), 0.8 / len(CLAMP_READINGS)
+        for i, reading in enumerate(CLAMP_READINGS):
+            found = [self.parts[name][reading] for name in names]
+            sizes, unsure = zip(*((one.rms, one.uncertainty) for one in found), strict=True)
+            ax.barh(rows - i * wide, sizes, wide, xerr=unsure, label=reading)
+        ax.set_yticks(rows - wide, names)
+        ax.set(xscale="log", xlabel="rms / largest magnitude")
+        ax.legend(fontsize="small")
 
     def to_dict(self) -> dict[str, Any]:
         """What the budget's JSON file holds."""

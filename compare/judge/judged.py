@@ -152,8 +152,12 @@ class Judged(SweepPair[Sweep]):
         """The verdict, the events, and what failed."""
         return "\n".join(self.lines())
 
-    def _repr_html_(self) -> str:
-        """The same for a notebook."""
+    def _tiles(self) -> dict[str, object]:
+        off = {f"{name} rms": f"{one.rms:.1e}" for name, one in self.disagreement.items()}
+        verdict = "agrees" if self.agrees else "disagrees"
+        return {"verdict": verdict, **off, "stations": self.stations}
+
+    def _below(self) -> str:
         return "<pre>" + "<br>".join(escape(line) for line in self.lines()) + "</pre>"
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeV
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, PHASES, InputError
-from analytic.problem.errors import require
+from analytic import CLAMP_READINGS, PHASES
+from analytic.problem.errors import InputError, near, require
 from analytic.problem.numbers import within
 from compare.align.frames import COMPONENTS
 from compare.judge.rate import Rate, free_fraction, soft_tip_fraction
@@ -68,7 +68,7 @@ class Limits:
         for name in self.special:
             if name not in self._SPECIAL:
                 known = f"one of {', '.join(self._SPECIAL)}"
-                raise InputError(f"tolerances.{name}", "unknown", known, "correct the name")
+                raise InputError(f"tolerances.{name}", "unknown", known, near(name, self._SPECIAL))
         special = {name: as_limit(name, value) for name, value in self.special.items()}
         object.__setattr__(self, "special", special)
 

@@ -1,17 +1,22 @@
 """How far two aligned sweeps are apart: component by component, phase by phase."""
 
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 import pandas as pd
 
 from analytic import Readings
 from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.shown import Shown
 from analytic.space import SpatialReadings
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Sweep = TypeVar("Sweep", Readings, SpatialReadings)
 
@@ -53,13 +58,27 @@ class Disagreement:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SweepPair(Generic[Sweep]):
+class SweepPair(Shown, Generic[Sweep]):
     """Two sweeps, and how far each component of the candidate is off along their travel."""
 
     reference: Sweep
     candidate: Sweep
     disagreement: dict[str, Disagreement]
     events: dict[str, Occurrence]
+
+    def plot(self) -> "list[Axes]":
+        """Draw the clamp readings of both sweeps along the way.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One a reading; a notebook shows them.
+        """
+        return self.candidate.plot(self.reference.plot())
+
+    def _draw(self, figure: "Figure") -> None:
+        self.reference._draw(figure)
+        self.candidate.plot(figure.axes)
 
 
 def disagreement(

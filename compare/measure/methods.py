@@ -10,6 +10,7 @@ import pandas as pd
 from analytic import CLAMP_READINGS, InputError, Readings, reconstruct, reconstruct_by_decision
 from analytic.from_clamp.earlier.methods import METHODS, NAMES
 from analytic.problem.arrays import Floats
+from analytic.problem.errors import unknown
 from compare.sense.noise import with_noise
 
 INFORMED = "elastica-informed"
@@ -32,7 +33,7 @@ def method_errors(
     chosen = list(methods)
     for name in chosen:
         if name not in NAMES:
-            raise InputError("method", repr(name), f"one of {', '.join(NAMES)}", "choose one")
+            raise unknown("method", name, NAMES)
     if not {"contact_x", "contact_y", "phase"} <= set(truth.table):
         raise InputError(
             f"contacts of the readings ({truth.source})",

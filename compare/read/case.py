@@ -1,9 +1,9 @@
 """Cases by name or TOML file, and what is to be done with them."""
 
-import difflib
 from pathlib import Path
 
 from analytic import NAMED_TABLES, InputError, named_case
+from analytic.problem.errors import unknown
 from compare.read.job import Job, SpaceJob
 from mujoco_models.settings import Settings
 
@@ -33,13 +33,8 @@ def load_case(name_or_path: str | Path) -> Job | SpaceJob:
     if name in NAMED_TABLES:
         return Job(named_case(name), Settings())
     if not name.endswith(".toml"):
-        near = difflib.get_close_matches(name, NAMED_TABLES, n=1)
-        raise InputError(
-            "case",
-            repr(name),
-            f"one of {', '.join(NAMED_TABLES)}, or the path of a .toml file",
-            f"did you mean {near[0]}?" if near else "`vibrissa list cases` lists them",
-        )
+        more, remedy = ", or the path of a .toml file", "`vibrissa list cases` lists them"
+        raise unknown("case", name, NAMED_TABLES, more=more, remedy=remedy)
     from compare.read.toml import TomlFile  # named cases need none of the tables of a file
 
     file = TomlFile.read(Path(name), "case file")

@@ -1,6 +1,6 @@
 """Errors of validation in one line, for every kind of file: one formatter."""
 
-import difflib
+import re
 import reprlib
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, near
 from compare.read.toml import KeyPlace
 
 _LONGEST_NAME = 100
@@ -32,16 +32,18 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
     name, value, context = place(keys), shown(first["input"]), first.get("ctx", {})
     match first["type"]:
         case "unknown_key":
-            key, near = context["key"], context["near"]
-            remedy = f"did you mean {near}?" if near else f"remove {shown(key)}"
-            allowed = f"one of the keys {context['allowed']}"
+            key, known = context["key"], context["allowed"]
+            remedy = near(key, known.split(", "), f"remove {shown(key)}")
+            allowed = f"one of the keys {known}"
             return InputError(place([*keys, key]), shown(first["input"][key]), allowed, remedy)
         case "missing":
             return InputError(name, "missing", "given", "add it")
         case "union_tag_invalid" | "union_tag_not_found":
             tag = shown(context["tag"]) if "tag" in context else "missing"
-            allowed = f"one of {context['expected_tags']}" if "tag" in context else "given"
-            return InputError(f"{name}.kind", tag, allowed, "say what it is")
+            known = context.get("expected_tags", "")
+            allowed, remedy = f"one of {known}" if known else "given", "say what it is"
+            remedy = near(context.get("tag", ""), re.findall("[a-z-]+", known), remedy)
+            return InputError(f"{name}.kind", tag, allowed, remedy)
         case "model_type" | "dataclass_type":
             return InputError(name, value, "a table", "write its keys below its name in brackets")
         case "value_error":
@@ -64,8 +66,7 @@ def require_known(given: object, allowed: Sequence[str]) -> None:
     """Refuse a table with an unknown key."""
     for key in given if isinstance(given, dict) else ():
         if key not in allowed:
-            near = difflib.get_close_matches(key, allowed, n=1)
-            about = {"key": key, "near": "".join(near), "allowed": ", ".join(allowed)}
+            about = {"key": key, "allowed": ", ".join(allowed)}
             raise PydanticCustomError(UNKNOWN_KEY, "no known key", about)
 
 

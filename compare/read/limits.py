@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import Field, StringConstraints, ValidationError
 
 from analytic import InputError
+from analytic.problem.errors import near
 from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.complaints import complaint
 from compare.read.quantities import Table
@@ -39,7 +40,8 @@ def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]
         where = ("tolerances", *keys)
         here = place(where)
         if len(keys) == 1 and keys[0] not in kind.general():
-            raise InputError(here, "unknown", f"one of {', '.join(kind.general())}", "correct it")
+            allowed = f"one of {', '.join(kind.general())}"
+            raise InputError(here, "unknown", allowed, near(keys[0], kind.general()))
         if not isinstance(said, dict):
             allowed = 'a limit with its reason, { limit = 1e-3, reason = "..." }'
             raise InputError(here, repr(said), allowed, "say why it is as large as it is")

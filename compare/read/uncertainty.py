@@ -6,6 +6,7 @@ from typing import Annotated, TypeAlias
 from pydantic import ConfigDict, Field, model_validator
 
 from analytic import CLAMP_READINGS, Case, InputError
+from analytic.problem.errors import near
 from compare.read.complaints import shown
 from compare.read.quantities import EXAMPLES, Table
 from compare.read.toml import KeyPlace
@@ -57,7 +58,9 @@ def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Un
     for name in table.noise:
         if name not in CLAMP_READINGS:
             here, known = place([_TABLE, "noise", name]), ", ".join(CLAMP_READINGS)
-            raise InputError(here, "unknown", f"a reading, one of {known}", "correct it")
+            raise InputError(
+                here, "unknown", f"a reading, one of {known}", near(name, CLAMP_READINGS)
+            )
     noise = {
         name: _size(said, DIMENSIONS[name], 0.0, case, place([_TABLE, "noise", name]))
         for name, said in table.noise.items()

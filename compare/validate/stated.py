@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, InputError
 from analytic.problem.arrays import Floats
+from analytic.problem.errors import unknown
 from analytic.problem.numbers import within
 from compare.validate.inputs import GAINS, INPUTS
 
@@ -83,17 +84,12 @@ class Uncertainties:
     def __post_init__(self) -> None:
         for name, one in self.inputs.items():
             if name not in NAMES:
-                raise InputError(
-                    f"uncertainty.{name}", "unknown", f"one of {', '.join(NAMES)}", "correct it"
-                )
+                raise unknown(f"uncertainty.{name}", name, NAMES)
             if not isinstance(one, Input):
                 raise InputError(f"uncertainty.{name}", repr(one), "an Input", "as Input(1e-3)")
         for name, size in self.noise.items():
             if name not in CLAMP_READINGS:
-                known = ", ".join(CLAMP_READINGS)
-                raise InputError(
-                    f"uncertainty.noise.{name}", "unknown", f"one of {known}", "fix it"
-                )
+                raise unknown(f"uncertainty.noise.{name}", name, CLAMP_READINGS)
             within(f"uncertainty.noise.{name}", size, 0.0, remedy="check the units")
         normal = [n for n, x in self.inputs.items() if x.distribution == "normal"]
         for first, second, coefficient in self.correlations:

@@ -2,13 +2,17 @@
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.shown import Shown
 from mujoco_models.inspect.hand import Hand
 from mujoco_models.motion import ConeKind, IntegratorKind
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +77,8 @@ class Geom:
     margin: float  # how far from an object its contacts already push, less their gap [length]
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredBeam:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredBeam(Shown):
     """The beam that a user's model is, its foot held.
 
     Attributes
@@ -185,6 +189,30 @@ class MeasuredBeam:
     def natural_curvature(self) -> float:
         """Mean over the length, of its turns at rest [1/length]."""
         return sum(joint.angle for joint in self.joints) / self.length
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            "model": self.model,
+            "foot": self.foot,
+            "length": f"{self.length:.4g}",
+            "EI at the tip": f"{self.tip_rigidity:.4g}",
+            self.springs: len(self.joints),
+            "period": f"{self.period:.3g}",
+            "damping ratio": f"{self.damping_ratio:.3g}",
+            "sag": f"{self.sag:.3g}",
+        }
+
+    def _draw(self, figure: "Figure") -> None:
+        ax = figure.subplots()
+        if self.joints:
+            places = [joint.s for joint in self.joints]
+            ax.plot(places, [joint.flexural_rigidity for joint in self.joints], "o-", label="EI")
+            ax.axhline(self.tip_rigidity, color="grey", linestyle="--", label="as the tip feels it")
+            ax.set(xlabel="arc length from the clamp", ylabel="flexural rigidity")
+            ax.legend()
+        else:
+            ax.plot(self.bent[:, 0], self.loads, "o-")
+            ax.set(xlabel="how far the tip moves", ylabel="force on the tip")
 
     def to_dict(self) -> dict[str, Any]:
         """All of it.

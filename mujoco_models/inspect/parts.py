@@ -1,6 +1,5 @@
 """What of a user's model is the vibrissa, its foot, and the sensors at its clamp."""
 
-import difflib
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
@@ -8,7 +7,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, unknown
 from mujoco_models.inspect.drive import holders as holders_of
 from mujoco_models.inspect.load import FORCE, TORQUE
 from mujoco_models.inspect.rod import Chain, Rod, flexes, rod_of
@@ -236,7 +235,6 @@ def _named(option: str, name: str, what: str, known: list[str]) -> int:
     if name in known:
         return known.index(name)
     names = [one for one in known if one]
-    near = difflib.get_close_matches(name, names, n=1)
-    shown = ", ".join(names[:12]) or "none with a name"
-    remedy = f"did you mean {near[0]}?" if near else f"it has {shown}"
-    raise InputError(option, repr(name), f"the name of a {what} of the model", remedy)
+    if not names:
+        raise InputError(option, repr(name), f"the name of a {what}", "the model names none")
+    raise unknown(option, name, names[:12], more=f": the model's {what} names")

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,10 @@ from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
+from analytic.problem.shown import Shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _DOUBLE_SIDED_95 = 1.959964
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
@@ -49,8 +54,8 @@ class Estimate:
     highest: float
 
 
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, repr=False)
+class Calibration(Shown):
     """What a sweep past a known object says of the vibrissa.
 
     Parameters
@@ -89,6 +94,25 @@ class Calibration:
         """Whether the fit leaves no more than chance and the noise, known to a tenth, do."""
         freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
         return bool(self.misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            **{
+                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
+                for name, one in self.found.items()
+            },
+            "misfit": f"{self.misfit:.3g}{'' if self.explains else ', not explained'}",
+            "stations": self.stations,
+        }
+
+    def _draw(self, figure: "Figure") -> None:
+        axes = figure.subplots(1, len(self.found), squeeze=False)[0]
+        for ax, (name, one) in zip(axes, self.found.items(), strict=True):
+            ends = [end for end in (one.lowest, one.highest) if np.isfinite(end)]
+            ax.plot([0] * len(ends), ends, "_-", markersize=18, label="in 95 % of all cases")
+            ax.plot(0, one.value, "o", color="black")
+            ax.set(title=name, xticks=[])
+        axes[0].legend(fontsize="small")
 
 
 def calibrate(

@@ -1,25 +1,31 @@
 """The problem in space: a vibrissa, a convex body, and the way of the foot."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.problem.beam import Beam
+from analytic.problem.case_shown import described
 from analytic.problem.errors import InputError, require
+from analytic.problem.shown import Shown
 from analytic.problem.support import require_plain
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.path import FootPath
 from analytic.space.problem.straight import StraightVibrissa
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
+
 _FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _LARGEST = 1e3  # L, of a mesh: a larger one is a wall, or in another unit
 _SMALLEST = 1e-3  # L: a smaller one is a grain, or in another unit
 
 
-@dataclass(frozen=True)
-class SpatialCase:
+@dataclass(frozen=True, repr=False)
+class SpatialCase(Shown):
     """What every engine is given: physics only, no numerics.
 
     The frame is that of the planar problem: y is up, the base plane is normal to it, x, y and z are
@@ -98,6 +104,49 @@ class SpatialCase:
                 "height": self.path.height,
                 "tangent": self.path.clamp_tangent.tolist(),
             },
+        }
+
+    def plot(self, ax: "Axes3D | None" = None) -> "Axes3D":
+        """Draw the body, the way of the foot, and the vibrissa at its corners.
+
+        Parameters
+        ----------
+        ax : mpl_toolkits.mplot3d.Axes3D, optional
+            New ones if not given.
+
+        Returns
+        -------
+        mpl_toolkits.mplot3d.Axes3D
+            With equal scales, the case's y upwards.
+        """
+        if ax is None:
+            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
+
+            ax = plt.figure(layout="constrained").add_subplot(projection="3d")
+        feet = self.path.corners
+        tips = feet + self.beam.length * self.path.clamp_tangent
+        middle, reach = (feet + tips).mean(axis=0) / 2, 1.5 * self.beam.length
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+        faces = self.body.patches(middle, reach)
+        near = faces[(np.abs(faces - middle) <= reach).all(axis=(1, 2))]
+        ax.add_collection3d(Poly3DCollection(near[..., [0, 2, 1]], facecolor="#dddddd80"))
+        ax.plot(feet[:, 0], feet[:, 2], feet[:, 1], "--", color="#555555", label="way of the foot")
+        for foot, tip in zip(feet, tips, strict=True):
+            ax.plot(*np.stack([foot, tip])[:, [0, 2, 1]].T, color="#0072b2")
+        ax.set(xlabel="x", ylabel="z", zlabel="y", aspect="equal")
+        ax.legend()
+        return ax
+
+    def _draw(self, figure: "Figure") -> None:
+        self.plot(figure.add_subplot(projection="3d"))
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            "case": self.name,
+            "body": self.body.label,
+            "beam": described(self.beam),
+            "stations": f"{self.path.stations}, travel from 0 to {self.path.marks[-1]:.4g}",
         }
 
     def _place(self, travel: float) -> str:

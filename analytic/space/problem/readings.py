@@ -31,7 +31,7 @@ STATUSES_IN_SPACE = ("ok", "diverged", "slipped off", "unsettled", "lost")
 _WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SpatialReadings(SweepTable):
     """One sweep in space, in the units of its beam.
 
@@ -67,6 +67,7 @@ class SpatialReadings(SweepTable):
     source: str = "measured"
     provenance: Mapping[str, Any] = field(default_factory=dict)
     sensed: ClassVar[tuple[str, ...]] = SENSED_IN_SPACE
+    panels: ClassVar[Mapping[str, tuple[str, ...]]] = {"force": FORCE, "moment": MOMENT}
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -77,6 +78,20 @@ class SpatialReadings(SweepTable):
     def clamp_tangent(self) -> Floats:
         """Direction of the vibrissa at its clamp, of length 1, shape (3,)."""
         return np.asarray(self.tangent)
+
+    @property
+    def running(self) -> str:
+        """The column over which the sweep runs; where it is missing, its steps are added up."""
+        return "travel"
+
+    @property
+    def running_values(self) -> Floats:
+        """How far along its path the foot is at the stations [length]."""
+        recorded = self.values("travel")
+        if np.isfinite(recorded).all():
+            return recorded
+        steps = np.linalg.norm(np.diff(self.values(*FOOT), axis=0), axis=1)
+        return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def touching(self) -> Booleans:

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any
 
 from analytic import NAMED_TABLES, InputError
+from analytic.problem.errors import unknown
 from compare.read.complaints import shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
@@ -147,12 +148,9 @@ class Base:
                 )
             base = {name: t for name, t in file.tables.items() if name in (*RUN_TABLES, "whisk")}
         else:
-            raise InputError(
-                self._file.place(["study", "case"]),
-                shown(case),
-                f"one of {', '.join(NAMED_TABLES)}, or the path of a .toml file",
-                "leave it out to describe the case here",
-            )
+            here, more = self._file.place(["study", "case"]), ", or the path of a .toml file"
+            remedy = "leave it out to describe the case here"
+            raise unknown(here, case, NAMED_TABLES, more=more, remedy=remedy)
         return {name: {**base.get(name, {}), **own.get(name, {})} for name in {**base, **own}}
 
     def _path(self, name: str) -> str:

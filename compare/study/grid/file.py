@@ -1,6 +1,5 @@
 """Study files: a case file with tables that say what varies and what is recorded."""
 
-import difflib
 import math
 from collections.abc import Iterator, Mapping
 from importlib.resources import files
@@ -11,6 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from analytic import InputError
+from analytic.problem.errors import unknown
 from compare.read.complaints import complaint, shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Value
@@ -46,13 +46,7 @@ def load_study(name_or_path: str) -> Study:
     shipped = shipped_studies()
     path = shipped.get(name_or_path, Path(name_or_path))
     if path.suffix != ".toml":
-        near = difflib.get_close_matches(name_or_path, shipped, n=1)
-        raise InputError(
-            "study",
-            repr(name_or_path),
-            f"one of {', '.join(shipped)}, or the path of a .toml file",
-            f"did you mean {near[0]}?" if near else "name one of them",
-        )
+        raise unknown("study", name_or_path, shipped, more=", or the path of a .toml file")
     return _checked(TomlFile.read(path, "study file"))
 
 

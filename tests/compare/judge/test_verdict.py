@@ -39,7 +39,7 @@ def test_what_makes_all_else_wrong_comes_before_all(made, leads):
 def test_the_cause_comes_first():
     found = compare(solved(), scaled(solved(), **dict.fromkeys(CLAMP_READINGS, 1.05)))
     assert [*found.lines()][1].startswith("  likely: flexural rigidity")
-    assert found._repr_html_().count("<br>") == len([*found.lines()]) - 1 < 24
+    assert found._below().count("<br>") == len([*found.lines()]) - 1 < 24
     assert [len(ax.lines) for ax in found.plot()] == [2, 2, 2]
 
 

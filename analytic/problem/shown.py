@@ -1,0 +1,59 @@
+"""What a value shows of itself: a line in a terminal, tiles and a picture in a notebook."""
+
+from base64 import b64encode
+from collections.abc import Mapping
+from html import escape
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+from analytic.problem.beam import Beam
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_TILES = "display:flex;flex-wrap:wrap;gap:6px;margin:4px 0"
+_TILE = "border:1px solid #8888;border-radius:6px;padding:2px 10px"
+_WIDTH, _HEIGHT, _DPI = 6.4, 3.8, 110  # inches; dots an inch
+_SI = {"foot": "m", "travel": "m", "force": "N", "moment": "N m", "clamp_angle": "rad"}
+
+
+class Shown:
+    """A value that says what it comes to, and can be drawn."""
+
+    def _tiles(self) -> Mapping[str, object]:
+        """What it comes to, by name, the most important first."""
+        raise NotImplementedError
+
+    def _draw(self, figure: "Figure") -> None:
+        """The picture."""
+        raise NotImplementedError
+
+    def _below(self) -> str:
+        """What a notebook shows below the picture, as HTML."""
+        return ""
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{name}: {value}" for name, value in self._tiles().items())
+        return f"{type(self).__name__}({said})"
+
+    def _repr_html_(self) -> str:
+        """Tiles and a picture, for a notebook."""
+        tiles = "".join(
+            f'<div style="{_TILE}"><small>{escape(name)}</small><br>{escape(str(value))}</div>'
+            for name, value in self._tiles().items()
+        )
+        return f'<div style="{_TILES}">{tiles}</div>{self._picture()}{self._below()}'
+
+    def _picture(self) -> str:
+        from matplotlib.figure import Figure  # slow to load, and only notebooks need it
+
+        figure, file = Figure((_WIDTH, _HEIGHT), layout="constrained"), BytesIO()
+        self._draw(figure)
+        figure.savefig(file, dpi=_DPI)
+        return f'<img src="data:image/png;base64,{b64encode(file.getvalue()).decode()}">'
+
+
+def with_unit(name: str, beam: Beam) -> str:
+    """A column's name as axes say it."""
+    units = [unit for start, unit in _SI.items() if name.startswith(start)]
+    return f"{name} [{units[0]}]" if beam.si else name
