@@ -9,31 +9,28 @@ from compare.read.job import Job, SpaceJob
 from compare.read.kinds import PLANE
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 
-_WARP = "mujoco-warp>=4.0,<5"
-
 
 def evaluate(job: Job | SpaceJob, folder: Path, stiffnesses: str) -> int:
-    """Evaluate the states in MuJoCo Warp, in single precision, over the contact stiffness."""
+    """Evaluate the states by what is installed for it, over the contact stiffness."""
     if not isinstance(job, Job) or job.kind != PLANE:
         raise InputError("--float32", "given", f"for {PLANE}", f"this is {job.kind}")
     own = float(job.settings.contact_stiffness)
     wanted = sorted({own, *_numbers(stiffnesses)})
-    from engines.found import installed
+    from engines.precision.evaluators import evaluators
 
-    version, trouble = installed(_WARP)
-    if trouble is not None:
-        raise InputError("mujoco-warp", version or "missing", _WARP, trouble)
+    there = evaluators()
     with output_folder(folder) as place:
         from compare.commands import terminal
         from compare.show.float32 import losses_table, picture, sentence
-        from engines.warp.gate import by_stiffness, gate
+        from engines.precision.gate import by_stiffness, gate
 
         steps = len(wanted) * job.case.sweep.stations
         with terminal.progress("single precision", steps) as advance:
-            table = gate(job.case, job.settings, wanted, advance)
+            table = gate(job.case, job.settings, there, wanted, advance)
         found = by_stiffness(table)
-        terminal.show(losses_table(found, job.case.name))
-        terminal.print_line(sentence(found, version or ""))
+        for name, rows in found.groupby("evaluator", sort=False):
+            terminal.show(losses_table(str(name), rows, job.case.name))
+            terminal.print_line(sentence(str(name), rows))
         for name, rows in (("stations", table), ("float32", found)):
             terminal.keep(place / f"{name}.csv", rows)
         terminal.keep(place / "float32.png", picture(found, job.case.name))

@@ -33,7 +33,9 @@ def inspect(
     ],
     float32: Annotated[
         bool,
-        flag("--float32", "Evaluate the states at rest in MuJoCo Warp's single precision."),
+        flag(
+            "--float32", "Evaluate the states at rest in MuJoCo Warp's or MJX's single precision."
+        ),
     ] = False,
     foot: Annotated[Name, option("The body that holds the vibrissa.", "BODY"), _OF_A_FILE] = None,
     force: Annotated[Name, option("The force sensor at its clamp.", "NAME"), _OF_A_FILE] = None,

@@ -11,10 +11,12 @@ from mujoco_models.sweep.sweep import set_out
 from tests.compare.command import vibrissa
 
 pytest.importorskip("mujoco_warp", reason="MuJoCo Warp is an extra: pip install '.[warp]'")
+pytest.importorskip("mujoco.mjx", reason="MJX is an extra: pip install '.[mjx]'")
 
-from engines.warp.gate import by_stiffness, gate
-from engines.warp.resolution import chance_of_loss, force_deviation
-from engines.warp.subject import evaluate
+from engines.precision import mjx, warp
+from engines.precision.gate import by_stiffness, gate
+from engines.precision.resolution import chance_of_loss, force_deviation
+from engines.precision.state import State
 
 SETTINGS = Settings(segments=20)
 STIFFNESSES = (1e4, 1e6, 1e8)
@@ -25,9 +27,17 @@ def short(name, stations=24):
     return replace(case, sweep=replace(case.sweep, stations=stations))
 
 
-@pytest.fixture(scope="module", params=["catenary", "parabola"])
+@pytest.fixture(
+    scope="module",
+    params=[
+        ("catenary", warp.evaluate),
+        ("parabola", warp.evaluate),
+        pytest.param(("catenary", mjx.in_single), marks=pytest.mark.slow),
+    ],
+)
 def looked_at(request):
-    return gate(short(request.param), SETTINGS, STIFFNESSES)
+    name, evaluate = request.param
+    return gate(short(name), SETTINGS, {"single": evaluate}, STIFFNESSES)
 
 
 def test_the_depths_are_off_by_the_resolution(looked_at):
@@ -55,13 +65,26 @@ def test_forces_and_balance_are_off_by_stiffness_times_resolution(looked_at):
         assert ((ratio > 0.5) & (ratio < 2)).all(), name
 
 
-def test_without_a_loaded_contact_both_precisions_agree():
+@pytest.mark.parametrize(
+    "evaluate", [warp.evaluate, pytest.param(mjx.in_single, marks=pytest.mark.slow)]
+)
+def test_without_a_loaded_contact_both_precisions_agree(evaluate):
     case = short("catenary", 4)
     walk = set_out(case, replace(SETTINGS, obstacle="primitive"))
     walk.go_to(float(case.foot_x[0]))
-    found = evaluate(walk.model)
+    (found,) = evaluate([State.of(walk.model)])
     assert (found.force == 0).all()
     assert found.imbalance < 1e-6
+
+
+@pytest.mark.slow
+def test_in_double_precision_it_is_mujocos_state():
+    """To the rounding of a depth, some 2e-16 L, times the stiffness."""
+    table = gate(short("parabola"), Settings(segments=10), {"double": mjx.in_double}, (1e4, 1e7))
+    assert not table["lost"].any()
+    assert table["depth_error"].abs().max() < 2e-15
+    for stiffness, rows in table.groupby("contact_stiffness"):
+        assert rows["force_error"].max() < 2e-15 * stiffness, stiffness
 
 
 def test_the_chances_are_those_of_many_throws():
@@ -80,14 +103,14 @@ def test_the_chances_are_those_of_many_throws():
 @pytest.mark.parametrize(
     ("case", "settings", "says"),
     [
-        (named_case("catenary"), Settings(beam="rod"), "beam for mujoco-warp"),
+        (named_case("catenary"), Settings(beam="rod"), "beam for --float32"),
         (Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])), Settings(), "primitive"),
         (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
     ],
 )
 def test_what_cannot_be_looked_at_is_a_line(case, settings, says):
     with pytest.raises(InputError, match=says):
-        gate(case, settings)
+        gate(case, settings, {})
 
 
 @pytest.mark.slow
@@ -105,7 +128,8 @@ def test_the_command_says_where_it_loses_contacts(tmp_path):
     )
     done = vibrissa(*command, "--contact-stiffness", "1e5,1e9", cwd=tmp_path)
     assert done.returncode in (0, 1), done.stderr
-    assert "loses contacts from" in done.stdout
+    assert done.stdout.count("loses contacts from") == 2
+    assert "64 bits loses no contact" in done.stdout
     assert {p.name for p in (tmp_path / "out").iterdir()} == {
         "float32.csv", "float32.png", "stations.csv",
     }  # fmt: skip

@@ -1,19 +1,20 @@
 """A sweep at rest in double precision, looked at in single: where contacts are lost, and why.
 
-Every state is MuJoCo's own, at rest. MuJoCo Warp then evaluates it, so that what differs is not the
-way to a balance but the balance itself.
+Every state is MuJoCo's own, at rest. MuJoCo Warp or MJX then evaluates it, so that what differs is
+not the way to a balance but the balance itself.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
+from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from engines.warp.resolution import across, chance_of_loss, covariance, force_deviation
-from engines.warp.subject import evaluate
+from engines.precision.resolution import across, chance_of_loss, covariance, force_deviation
+from engines.precision.state import Evaluate, Evaluated, State
 from mujoco_models.model.model import BeamModel
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.sweep import set_out
@@ -25,42 +26,49 @@ STIFFNESSES = (1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
 def gate(
     case: Case,
     settings: Settings,
+    evaluators: Mapping[str, Evaluate],
     stiffnesses: Sequence[float] = STIFFNESSES,
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Evaluate MuJoCo's states at rest in single precision, for several contact stiffnesses."""
+    """Have MuJoCo's states at rest evaluated, for several contact stiffnesses."""
     if settings.beam != "chain" or not settings.planar:
         raise InputError(
-            "beam for mujoco-warp",
+            "beam for --float32",
             repr(settings.beam),
             "'chain' in the plane",
             "take --beam chain",
         )
     # The mirror image has the same numbers, but for the sign of x.
     leftward = case.mirrored() if case.foot_x[-1] > case.foot_x[0] else case
-    rows = []
+    states, expected = [], []
     for stiffness in stiffnesses:
         numerics = replace(settings, obstacle="primitive", contact_stiffness=stiffness)
         walk = set_out(leftward, numerics)
         for foot_x in (leftward.foot_x / leftward.beam.length).tolist():
             walk.go_to(foot_x)
             if walk.doubt is None and walk.model.contacts().loaded.any():
-                about = {"contact_stiffness": stiffness, "foot_x": foot_x}
-                rows.append(about | _looked_at(walk.model))
+                states.append(State.of(walk.model))
+                expected.append(_expected(walk.model, foot_x))
             advance()
-    if not rows:
+    if not states:
         raise InputError("case", case.name, "with a station in contact", "let the sweep reach it")
+    rows = [
+        {"evaluator": name} | _compared(one, found)
+        for name, evaluate in evaluators.items()
+        for one, found in zip(expected, evaluate(states), strict=True)
+    ]
     return pd.DataFrame(rows)
 
 
 def by_stiffness(table: pd.DataFrame) -> pd.DataFrame:
-    """What was found and what was predicted, for each contact stiffness."""
+    """What was found and what was predicted, for each evaluator and contact stiffness."""
     rows = []
-    for stiffness, group in table.groupby("contact_stiffness"):
+    for (name, stiffness), group in table.groupby(["evaluator", "contact_stiffness"], sort=False):
         largest = group["load"].max()
         off = (group["depth_error"] / group["resolution"]).dropna()
         rows.append(
             {
+                "evaluator": name,
                 "contact_stiffness": stiffness,
                 "stations": len(group),
                 "depth": group["depth"].median(),
@@ -81,13 +89,26 @@ def _rms(numbers: pd.Series) -> float:
     return float(np.sqrt((numbers**2).mean()))
 
 
-def _looked_at(model: BeamModel) -> dict[str, float | bool]:
-    """A state at rest, in both precisions."""
-    contacts, stiffness, single = model.contacts(), model.contact_stiffness, evaluate(model)
+@dataclass(frozen=True, eq=False)
+class _Expected:
+    """A state at rest in MuJoCo, and what float32's resolution makes of it."""
+
+    contact_stiffness: float
+    foot_x: float
+    bead: int  # that is deepest
+    depth: float
+    resolution: float
+    force: Floats
+    chance: float
+    force_error: float
+    imbalance: float
+
+
+def _expected(model: BeamModel, foot_x: float) -> _Expected:
+    contacts, stiffness = model.contacts(), model.contact_stiffness
     depth, normal = -contacts.distance, contacts.normal
     together = covariance(model, normal, contacts.touch)
     deviation = np.sqrt(np.diag(together))
-    force = stiffness * np.maximum(depth, 0) @ normal
     # The forces are as alike as the depths are, and each as far off as its contact lets it be.
     off = stiffness * force_deviation(depth, deviation) / deviation
     forces = np.outer(off, off) * together
@@ -95,16 +116,32 @@ def _looked_at(model: BeamModel) -> dict[str, float | bool]:
     carried = np.arange(levers.shape[1]) <= contacts.link[:, None]
     moments = np.einsum("ij,ik,jk->k", forces, *2 * [carried * levers[:, :, 0]])
     deepest = int(np.argmax(depth))
-    seen = -single.distance[contacts.touch[deepest]]
+    return _Expected(
+        contact_stiffness=stiffness,
+        foot_x=foot_x,
+        bead=int(contacts.touch[deepest]),
+        depth=float(depth[deepest]),
+        resolution=float(deviation[deepest]),
+        force=stiffness * np.maximum(depth, 0) @ normal,
+        chance=chance_of_loss(depth, together),
+        force_error=float(np.sqrt((forces * (normal @ normal.T)).sum())),
+        imbalance=float(np.sqrt(moments.max())),
+    )
+
+
+def _compared(one: _Expected, found: Evaluated) -> dict[str, float | bool]:
+    seen = -found.distance[one.bead]
     return {
-        "load": float(np.hypot(*force)),
-        "depth": float(depth[deepest]),
-        "resolution": float(deviation[deepest]),
-        "depth_error": float(seen - depth[deepest]) if np.isfinite(seen) else np.nan,
-        "lost": not (single.distance < 0).any(),
-        "chance": chance_of_loss(depth, together),
-        "force_error": float(np.hypot(*(single.force - force))),
-        "predicted_force_error": float(np.sqrt((forces * (normal @ normal.T)).sum())),
-        "imbalance": single.imbalance,
-        "predicted_imbalance": float(np.sqrt(moments.max())),
+        "contact_stiffness": one.contact_stiffness,
+        "foot_x": one.foot_x,
+        "load": float(np.hypot(*one.force)),
+        "depth": one.depth,
+        "resolution": one.resolution,
+        "depth_error": float(seen - one.depth) if np.isfinite(seen) else np.nan,
+        "lost": not (found.distance < 0).any(),
+        "chance": one.chance,
+        "force_error": float(np.hypot(*(found.force - one.force))),
+        "predicted_force_error": one.force_error,
+        "imbalance": found.imbalance,
+        "predicted_imbalance": one.imbalance,
     }
