@@ -17,6 +17,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.mirror import facing, leftward
+from analytic.problem.poses import Pose
 from analytic.problem.readings import Readings
 from engines.linkage import Maker
 from mujoco_models.beams.layout import OF_CURVATURE
@@ -78,7 +79,7 @@ def sweep_twin(
     beam, obstacle = parts_at_rest(swept, settings, name)
     _check(beam, obstacle, name)
     twin = Twin(maker(), beam, swept.radius, obstacle, settings.contact_stiffness)
-    walk = Walk(twin, float(swept.foot_x[0]) / swept.beam.length, settings.tolerance)
+    walk = Walk(twin, swept, settings.tolerance)
     about = {
         "engine": f"{engine}, vibrissa-testbed {version('vibrissa-testbed')}",
         "settings": asdict(settings),
@@ -101,7 +102,7 @@ class Twin:
         self.contact_stiffness, self.evaluations = contact_stiffness, 0
         self.radii = radius * self.layout.vibrissa.thickness(self.layout.beads)
         self._linkage = make(beam, self.radii, obstacle, contact_stiffness)
-        self._foot_x, self._window = 0.0, 0
+        self.pose, self._window = Pose(*np.zeros(3)), 0
         self._watched: frozenset[int] = frozenset()
         self._joints, self._places = self._linkage.place(0.0, np.zeros(len(self.layout.joints)))
         self._contacts = self._at_beads([])
@@ -117,12 +118,12 @@ class Twin:
         self._watched = beads
         self._linkage.attend(self._window, beads)
 
-    def imbalance(self, foot_x: float, angles: Floats) -> Floats:
+    def imbalance(self, pose: Pose, angles: Floats) -> Floats:
         """The engine's springs and contacts."""
         if not np.isfinite(angles).all():
             raise DivergedError("the joint angles are not finite")
-        self._foot_x, self.evaluations = foot_x, self.evaluations + 1
-        self._joints, self._places = self._linkage.place(foot_x, angles)
+        self.pose, self.evaluations = pose, self.evaluations + 1
+        self._joints, self._places = self._linkage.place(float(pose.foot_x), angles)
         near = self.obstacle.near(self._places, self._radius + CONTACT_GAP).tolist()
         self._contacts = self._at_beads([i for i in near if i in self._watched])
         loaded = self._contacts.loaded
@@ -207,7 +208,7 @@ class Twin:
 
     def discrepancy(self) -> float:
         """By how much that differs from the contacts and from the first spring."""
-        arm = self._contacts.point[self._contacts.loaded] - [self._foot_x, 0.0]
+        arm = self._contacts.point[self._contacts.loaded] - [self.pose.foot_x, 0.0]
         (x, y), (fx, fy) = arm.T, self._forces.T
         required = clamp.Clamp(*(-np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])).tolist())
         first = float(self._elastic[0])

@@ -1,5 +1,7 @@
 """What can go wrong in a simulation."""
 
+from analytic.problem.poses import Pose
+
 
 class DivergedError(ArithmeticError):
     """The simulation is not a number any more."""
@@ -10,16 +12,17 @@ class ClampError(ArithmeticError):
 
     Parameters
     ----------
-    foot_x : float
-        Foot position of the station [L].
+    pose : Pose
+        Of the clamp at the station [L, rad].
     discrepancy : float
         By how much the sensors differ from contacts and elasticity [EI/L^2, EI/L].
     allowed : float
         How much they may.
     """
 
-    def __init__(self, foot_x: float, discrepancy: float, allowed: float) -> None:
+    def __init__(self, pose: Pose, discrepancy: float, allowed: float) -> None:
         super().__init__(
-            f"at foot_x = {foot_x:.6g} L MuJoCo's clamp sensors differ by {discrepancy:.1e} "
+            f"with the foot at x = {pose.foot_x:.6g}, y = {pose.foot_y:.6g} L and the clamp at "
+            f"{pose.angle:.6g} rad MuJoCo's clamp sensors differ by {discrepancy:.1e} "
             f"(EI/L^2, EI/L) from what contacts and elasticity require; at most {allowed:g}"
         )

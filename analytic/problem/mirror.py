@@ -18,9 +18,8 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
 
 
 def leftward(case: Case) -> Case:
-    """A case whose foot moves to the left along its line: itself, or its mirror image."""
+    """A case whose clamp goes to the left: itself, or its mirror image."""
     require("case", case, Case, "named_case('catenary') makes one")
-    case.require_sweep("a simulation")
     return case if case.direction == "left" else case.mirrored()
 
 

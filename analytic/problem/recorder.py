@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import unknown
 from analytic.problem.readings import Readings, solved_readings
@@ -87,7 +88,9 @@ class AnyRecorder(ABC, Generic[Kept]):
 
 
 class Recorder(AnyRecorder[Readings]):
-    """Of a sweep in the plane to the left; its events are foot positions by name [L]."""
+    """Of a sweep in the plane to the left; its events are parameters of the way by name."""
+
+    case: Case
 
     def readings(self) -> Readings:
         """All rows, in the units of the case's beam."""
@@ -95,7 +98,10 @@ class Recorder(AnyRecorder[Readings]):
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
         for name in WORDS:
             columns[name] = np.array([_number(name, word) for word in columns[name]])
-        events = {n: None if x is None else x * beam.length for n, x in self.events().items()}
+        events = {
+            name: None if p is None else self.case.running_at(p)
+            for name, p in self.events().items()
+        }
         provenance = self._provenance(events)
         if any(np.isinf(values).any() for values in columns.values()):
             from analytic.problem.table import as_table  # slow to load

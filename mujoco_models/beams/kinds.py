@@ -29,12 +29,9 @@ def build(settings: Settings, spacing: float, vibrissa: Vibrissa | None = None) 
         raise InputError(
             "mujoco.planar",
             False,
-            "true for a vibrissa that is curved at rest, varies, or whose clamp turns or leans",
+            "true for a vibrissa that is curved at rest, varies, or whose clamp turns",
             "sideways it would twist, and no theory of it is here",
         )
-    if settings.beam == "cable" and vibrissa.rest.angle:
-        allowed = "chain or rod: a cable's clamp does not lean"
-        raise InputError("mujoco.beam", "cable", allowed, "choose one, or leave out support.angle")
     kinds = _PLANAR if settings.planar else _SPATIAL
     return kinds[settings.beam](settings, spacing, vibrissa)
 

@@ -25,10 +25,10 @@ class Vibrissa:
 
     @classmethod
     def of(cls, beam: Beam, held: Support) -> "Vibrissa":
-        """That of a case whose foot moves to the left."""
+        """That of a case whose clamp goes to the left, as the clamp has it."""
         given = beam.flexural_rigidity
         rigidity = given if isinstance(given, Along) else None
-        return cls(held.unloaded(beam), rigidity, beam.moment_unit / held.clamp_stiffness)
+        return cls(beam.unloaded, rigidity, beam.moment_unit / held.clamp_stiffness)
 
     @property
     def is_straight(self) -> bool:
@@ -42,9 +42,9 @@ class Vibrissa:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is straight and uniform, and its clamp rigid and upright."""
+        """Whether it is straight and uniform, and its clamp rigid."""
         uniform = self.rigidity is None and not self.is_cone
-        return self.is_straight and uniform and self.clamp_compliance == self.rest.angle == 0
+        return self.is_straight and uniform and self.clamp_compliance == 0
 
     def turn(self, s: Floats) -> Floats:
         """By how much the unloaded vibrissa is turned from the upright, to the left."""

@@ -7,7 +7,9 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
+from analytic.problem.poses import Pose, Poses
 from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.model.clamp import Clamp, by_sensors
@@ -56,10 +58,13 @@ class MovingModel(SteppedModel):
         radius: float,
         obstacle: Obstacle,
         motion: Motion,
-        foot_x: float,
+        poses: Poses,
+        begin: float,
     ) -> None:
+        start = poses.at(np.array(begin))
         self._layout, self.obstacle, self._radius = beam.layout, obstacle, radius
-        compiled = _spec(beam, radius, obstacle, motion, foot_x).compile()
+        self._angle = float(start.angle)
+        compiled = _spec(beam, radius, obstacle, motion, start).compile()
         implicit = motion.solref is None and motion.integrator == "discrete"
         super().__init__(compiled, obstacle.label, 1.0, follows_inertia=implicit)
         links = len(beam.layout.joints)
@@ -116,7 +121,7 @@ class MovingModel(SteppedModel):
     @property
     def tip_angle(self) -> float:
         """Slope angle of the last link [rad]."""
-        return self._layout.tip_angle(self.data.qpos[1:])
+        return self._layout.tip_angle(self.data.qpos[1:]) + self._angle
 
     def step(self, speed: float) -> None:
         """By the force on a heavy carriage that accelerates it so."""
@@ -159,7 +164,7 @@ class MovingModel(SteppedModel):
 
     def clamp(self) -> Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors."""
-        return by_sensors(self.data)
+        return by_sensors(self.data, self._angle)
 
     @property
     def touches(self) -> bool:
@@ -187,18 +192,18 @@ class MovingModel(SteppedModel):
 
 
 def _spec(
-    beam: Beam, radius: float, obstacle: Obstacle, motion: Motion, foot_x: float
+    beam: Beam, radius: float, obstacle: Obstacle, motion: Motion, start: Pose
 ) -> mujoco.MjSpec:
     """The model at rest, with masses, dampers, and a foot that slides."""
     spec = assemble(beam, radius, obstacle)
     foot = spec.body(FOOT)
-    foot.pos = [foot_x, 0, 0]
+    foot.pos, foot.quat = [start.foot_x, 0, 0], about_z(float(start.angle))
     # A force accelerates it, so that the vibrissa feels the start; the joint's own inertia is no
     # part of what the sensors at the clamp feel.
     foot.add_joint(
         name="drive",
         type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=[1, 0, 0],
+        axis=[np.cos(start.angle), -np.sin(start.angle), 0],
         armature=_CARRIAGE * MASS,
     )
     give_mass(spec, beam.layout, motion)

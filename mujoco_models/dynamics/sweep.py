@@ -82,8 +82,9 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
             "a chain or rod in the plane, for a sweep in motion",
             "choose one, or sweep at rest",
         )
+    case.require_sweep("a sweep in motion")
     beam, obstacle = parts(case, settings)
-    return MovingModel(beam, case.radius, obstacle, motion, start)
+    return MovingModel(beam, case.radius, obstacle, motion, case.poses, start)
 
 
 class Passes:

@@ -63,7 +63,7 @@ class _Written(SteppedModel):
 
     def clamp(self) -> Clamp:
         """By the sensors."""
-        fx, fy, mz = by_sensors(self.data)
+        fx, fy, mz = by_sensors(self.data, 0.0)
         force, moment = self._beam.force_unit, self._beam.moment_unit
         return Clamp(fx / force, fy / force, mz / moment)
 

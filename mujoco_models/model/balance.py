@@ -8,6 +8,7 @@ evaluated last. Arrays have a row for each joint, bead or contact.
 from typing import Protocol
 
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import Contacts
@@ -46,10 +47,12 @@ class Balance(Mechanics, Protocol):
 
     lookout: Lookout
     """What takes part in collisions."""
+    pose: Pose
+    """Of the clamp, in the configuration that was evaluated last."""
     evaluations: int
     """How often `imbalance` was called."""
 
-    def imbalance(self, foot_x: float, angles: Floats) -> Floats:
+    def imbalance(self, pose: Pose, angles: Floats) -> Floats:
         """Moment of springs and contacts at each joint; DivergedError if one is not finite."""
 
     def relieved(self) -> Floats:

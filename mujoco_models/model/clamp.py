@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Booleans, Floats
+from mujoco_models.beams.layout import turned
 
 
 class Clamp(NamedTuple):
@@ -17,13 +18,14 @@ class Clamp(NamedTuple):
     moment_z: float
 
 
-def by_sensors(data: mujoco.MjData) -> Clamp:
-    """MuJoCo's force and torque sensors at the clamp.
+def by_sensors(data: mujoco.MjData, angle: float) -> Clamp:
+    """MuJoCo's force and torque sensors at a clamp that leans to the left by an angle.
 
-    Their site sits at the foot, its axes are those of the world: what it transmits to the beam is
-    what the clamp does to the vibrissa.
+    Their site sits at the foot and leans with it: what it transmits to the beam is what the clamp
+    does to the vibrissa.
     """
     fx, fy, _, _, _, mz = data.sensordata
+    fx, fy = turned(np.array([fx, fy]), angle)
     return Clamp(float(fx), float(fy), float(mz))
 
 

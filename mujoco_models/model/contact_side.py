@@ -11,7 +11,7 @@ _POKES = -0.05  # cosine; a tip that pokes at right angles is on neither side
 
 
 class Side(Enum):
-    """Where a beam, whose foot moves to the left, is relative to the object."""
+    """Where a beam, whose clamp goes to the left, is relative to the object."""
 
     AHEAD = "free, the object is ahead"
     NEAR = "touches, with its left side"
@@ -34,6 +34,7 @@ def contact_side(model: Balance, contacts: Contacts) -> Side:
         normal_x, normal_y = contacts.normal[loaded].T
         side = load @ ((normal_x * y - normal_y * x) / np.hypot(x, y)) / load.sum()
         return Side.NEAR if side > _POKES else Side.FAR
-    x, y = model.obstacle.lowest
-    beside = float(np.interp(y, np.maximum.accumulate(axis[:, 1]), axis[:, 0]))
+    x, y = model.pose.seen(*np.array(model.obstacle.lowest))
+    along, up = model.pose.seen(*axis.T)
+    beside = float(np.interp(y, np.maximum.accumulate(up), along))
     return Side.AHEAD if beside > x else Side.PASSED

@@ -7,6 +7,9 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.poses import Pose
+from mujoco_models.beams.layout import turned
+from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
@@ -40,6 +43,7 @@ class BeamModel:
         self.radius = radius
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
+        self.pose = Pose(*np.zeros(3))
         self.evaluations = 0
         self.model = compiled(assemble(beam, radius, obstacle))
         self.data = mujoco.MjData(self.model)
@@ -60,13 +64,13 @@ class BeamModel:
         scene = MujocoScene(model, self.data, self.beads, obstacle)
         self.lookout = Lookout(scene, obstacle, radius, self.layout)
 
-    def imbalance(self, foot_x: float, angles: Floats) -> Floats:
+    def imbalance(self, pose: Pose, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.
 
         Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
-        self.move_foot(foot_x)
+        self.move_clamp(pose)
         self.beam.place(self.data, angles)
         self.evaluate()
         self.evaluations += 1
@@ -77,9 +81,11 @@ class BeamModel:
             raise DivergedError("MuJoCo's moments at the joints are not finite")
         return moments
 
-    def move_foot(self, foot_x: float) -> None:
-        """Put the foot there."""
-        self.model.body_pos[self._foot, 0] = foot_x
+    def move_clamp(self, pose: Pose) -> None:
+        """Put the foot there, and turn the clamp."""
+        self.pose = pose
+        self.model.body_pos[self._foot, :2] = pose.foot_x, pose.foot_y
+        self.model.body_quat[self._foot] = about_z(float(pose.angle))
 
     def evaluate(self) -> None:
         """Let MuJoCo evaluate the configuration that the beam is in, at rest.
@@ -223,11 +229,12 @@ class BeamModel:
 
     def clamp(self) -> clamp.Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors."""
-        return clamp.by_sensors(self.data)
+        return clamp.by_sensors(self.data, float(self.pose.angle))
 
     def discrepancy(self) -> float:
         """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""
         foot = self.data.xpos[self._foot]
         (fx, fy, _), (_, _, mz) = clamp.by_contacts(self.data, foot, self._surface.moves).tolist()
         moment = float(self.elastic_moments()[0])
-        return clamp.discrepancy(self.clamp(), clamp.Clamp(fx, fy, mz), self.layout.base[0], moment)
+        joint = turned(self.layout.base[0], self.pose.angle)
+        return clamp.discrepancy(self.clamp(), clamp.Clamp(fx, fy, mz), joint, moment)

@@ -16,6 +16,12 @@ from mujoco_models.settings import Settings
 def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
     """The beam and the obstacle, before an engine makes a model of them."""
     require_radius(case.radius, engine)
+    for who, tried in (
+        ("a cable", settings.beam == "cable"),
+        ("out of the plane", not settings.planar),
+    ):
+        if tried:
+            case.require_upright(who)
     obstacle = place(case, settings)
     spacing = np.inf
     if len(obstacle.corners) == 0:

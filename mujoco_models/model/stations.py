@@ -22,16 +22,17 @@ def visit(
     advance: Callable[[], None],
     keep: Callable[[Kept], None],
 ) -> Kept:
-    """Record the rows of all stations, one after the other [L]."""
-    name, places = next(iter(recorder.places.items()))
-    count = len(places)
+    """Record the rows of all stations, one after the other."""
+    places = recorder.places
+    count = len(next(iter(places.values())))
     with recorder.rescued(keep):
         for number, station in enumerate(stations, start=1):
             try:
                 recorder.rows.append(row_at(float(station)))
             except DivergedError as error:
                 recorder.rows.append(DIVERGED)
-                where = f"station {number} of {count}, {name} = {station:.6g} L"
+                at = ", ".join(f"{name} = {x[number - 1]:.6g}" for name, x in places.items())
+                where = f"station {number} of {count}, {at}"
                 raise DivergedError(f"diverged at {where}: {error}") from error
             advance()
     return recorder.readings()

@@ -26,23 +26,21 @@ class Bracket:
         resting = (state for _, state in reversed(self._failed) if state.settled)
         return next(resting, self._failed[-1][1])
 
-    def add(self, trial: float, state: State, foot_x: float) -> None:
+    def add(self, trial: float, state: State, p: float) -> None:
         """Remember that there was no neighbour."""
         self._held = 0
         others = [(x, other) for x, other in self._failed if x != trial]
-        self._failed = sorted([*others, (trial, state)], key=lambda one: -abs(one[0] - foot_x))
+        self._failed = sorted([*others, (trial, state)], key=lambda one: -abs(one[0] - p))
 
-    def leave_behind(self, foot_x: float, target: float) -> None:
-        """Forget those that the foot has come past."""
+    def leave_behind(self, p: float, target: float) -> None:
+        """Forget those that the clamp has come past."""
         self._held += 1
-        self._failed = [
-            (x, state) for x, state in self._failed if (x - foot_x) * (target - foot_x) > 0
-        ]
+        self._failed = [(x, state) for x, state in self._failed if (x - p) * (target - p) > 0]
 
-    def aim(self, foot_x: float, follows: Callable[[State], bool]) -> float:
+    def aim(self, p: float, follows: Callable[[State], bool]) -> float:
         """Where to try next."""
         for x, state in self._failed:
             if follows(state):
                 return x
         # How early Newton's method jumps or fails depends on how long the step was, too.
-        return self.nearest if self._held > 1 else (foot_x + self.nearest) / 2
+        return self.nearest if self._held > 1 else (p + self.nearest) / 2

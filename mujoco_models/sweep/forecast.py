@@ -8,6 +8,7 @@ does not confirm, its own balance corrects.
 
 import numpy as np
 
+from analytic.problem.poses import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
@@ -15,14 +16,14 @@ from mujoco_models.sweep.state import State, turned
 from mujoco_models.sweep.surrogate import Surrogate
 
 
-def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
-    """Where the beam will rest with its foot at `foot_x`, near `start`."""
+def forecast(model: Balance, pose: Pose, start: State, numerics: Numerics) -> State | None:
+    """Where the beam will rest in a pose of the clamp, near `start`."""
     if len(model.obstacle.corners):
         return None
     surrogate = Surrogate(model, start.forces, numerics.ahead)
     newton, state, lookout = Newton(surrogate, numerics), start, model.lookout
     for _ in range(numerics.forecasts):
-        contacts = surrogate.look(foot_x, state.angles)
+        contacts = surrogate.look(pose, state.angles)
         if contacts is None or surrogate.is_inside(contacts):
             return None
         touching = contacts.loaded

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.poses import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.newton import Newton
@@ -36,15 +37,15 @@ class _OnFacets(Newton):
         return np.zeros(len(contacts.distance))
 
 
-def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
-    """The minimum of the energy that is down from `start`, with the foot at `foot_x`."""
+def minimum(model: Balance, pose: Pose, start: State, numerics: Numerics) -> State | None:
+    """The minimum of the energy that is down from `start`, in a pose of the clamp."""
     if len(model.obstacle.corners):
         return None
     surrogate = Surrogate(model, start.forces, numerics.ahead, follow=True)
     newton, secant = _OnFacets(surrogate, numerics), Secant()
     angles = start.angles
     for _ in range(_STEPS):
-        contacts = surrogate.look(foot_x, angles)
+        contacts = surrogate.look(pose, angles)
         if contacts is None:
             return None
         slope = float(contacts.slope[contacts.distance.argmin()])
@@ -67,14 +68,14 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         if turn < _ON_A_FACET:
             places.insert(0, angles + secant.better(angles, step))
         most = surrogate.energy(contacts) * (1 + _ROUNDING)
-        tried = ((place, _energy(surrogate, foot_x, place)) for place in places)
+        tried = ((place, _energy(surrogate, pose, place)) for place in places)
         lower = next(((place, energy) for place, energy in tried if energy <= most), None)
         if lower is None:
             return near if turn < _ON_A_FACET else None
         there, energy = lower
         while _ON_A_FACET <= turn < _STRIDE:
             beyond = 2 * there - angles
-            farther = _energy(surrogate, foot_x, beyond)
+            farther = _energy(surrogate, pose, beyond)
             if farther >= energy:
                 break
             turn, there, energy = 2 * turn, beyond, farther
@@ -84,6 +85,6 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
     return near
 
 
-def _energy(surrogate: Surrogate, foot_x: float, angles: Floats) -> float:
-    contacts = surrogate.look(foot_x, angles)
+def _energy(surrogate: Surrogate, pose: Pose, angles: Floats) -> float:
+    contacts = surrogate.look(pose, angles)
     return np.inf if contacts is None else surrogate.energy(contacts)

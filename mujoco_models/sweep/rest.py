@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.poses import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contact_side import contact_side
 from mujoco_models.sweep.newton import Newton
@@ -20,7 +21,7 @@ from mujoco_models.sweep.state import State, turned
 
 def relax(
     model: Balance,
-    foot_x: float,
+    pose: Pose,
     start: State,
     tolerance: float,
     numerics: Numerics,
@@ -29,7 +30,7 @@ def relax(
     stay: float | None = None,
     held: bool = False,
 ) -> State:
-    """Bring the beam to rest with its foot at `foot_x`, from `start`."""
+    """Bring the beam to rest in a pose of the clamp, from `start`."""
     lookout, obstacle = model.lookout, model.obstacle
     newton, secant = Newton(model, numerics), Secant()
     state = best = State(start.angles, start.forces)
@@ -41,10 +42,10 @@ def relax(
     for _ in range(numerics.iterations):
         if lookout.window != window:  # what came to rest by another one does not count
             window, best, vain = lookout.window, State(state.angles, state.forces), 0
-        before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
+        before, residual = residual, _largest(model.imbalance(pose, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
-            residual = _largest(model.imbalance(foot_x, state.angles))
+            residual = _largest(model.imbalance(pose, state.angles))
             contacts = model.contacts()
         imbalance = residual
         if tolerance <= residual < nearly:
@@ -94,7 +95,7 @@ def relax(
             break
         if not around(model, state.forces, numerics.margin) <= lookout.watched:
             lookout.watch(lookout.watched | graded(model, state.forces, numerics.ahead))
-    model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
+    model.imbalance(pose, best.angles)  # leaves the readings with the state that is returned
     imbalance = min(best.imbalance, _largest(model.relieved()))
     return replace(best, imbalance=imbalance, side=contact_side(model, model.contacts()))
 

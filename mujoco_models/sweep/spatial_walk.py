@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.case import Case
 from mujoco_models.model.model import AT_REST, LONG_STEP, STEP, BeamModel
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.out_of_plane import Sideways, sideways
@@ -30,7 +31,7 @@ _IN_PLANE = 1e-5  # L; a nudged beam that is nearer than this has come back to t
 class _Departure(NamedTuple):
     """A beam that was nudged out of its plane: where, from which angles, and how fast it moves."""
 
-    foot_x: float
+    p: float
     angles: Floats
     timestep: float
 
@@ -39,16 +40,16 @@ class SpatialWalk(Walk[BeamModel]):
     """A walk that leaves the plane where the planar equilibrium is not stable in space."""
 
     def __init__(
-        self, model: BeamModel, foot_x: float, tolerance: float, numerics: Numerics | None = None
+        self, model: BeamModel, case: Case, tolerance: float, numerics: Numerics | None = None
     ) -> None:
-        super().__init__(model, foot_x, tolerance, numerics)
+        super().__init__(model, case, tolerance, numerics)
         self.left_plane: float | None = None
         self._held: Sideways | None = None
         self._departure: _Departure | None = None
 
     @property
     def events(self) -> dict[str, float | None]:
-        """Foot positions of what happened on the way [L]."""
+        """Parameters of the clamp's way at which things happened."""
         return {"out_of_plane": self.left_plane, **super().events}
 
     def go_to(self, target: float) -> None:
@@ -56,7 +57,7 @@ class SpatialWalk(Walk[BeamModel]):
         if self._departure is not None:
             self._drift(target, self._departure)
             return
-        start = self._foot_x, self._state
+        start = self._p, self._state
         if self._is_held_at(target):
             return
         onset = self._locate(start, target)
@@ -92,7 +93,7 @@ class SpatialWalk(Walk[BeamModel]):
         self._held = sideways(self.model) if resting else None
 
     def _resume(self, start: tuple[float, State]) -> None:
-        self._foot_x, self._state = start
+        self._p, self._state = start
         self._before = None
 
     def _locate(self, start: tuple[float, State], target: float) -> float:
@@ -102,7 +103,7 @@ class SpatialWalk(Walk[BeamModel]):
             self._resume(held)
             middle = (held[0] + lost) / 2
             if self._is_held_at(middle):
-                held = self._foot_x, self._state
+                held = self._p, self._state
             else:
                 lost = middle
         return (held[0] + lost) / 2
@@ -136,13 +137,13 @@ class SpatialWalk(Walk[BeamModel]):
         model.evaluate()
 
     def _drift(self, target: float, departure: _Departure) -> None:
-        """Let MuJoCo's own motion carry the beam, with its foot at `target`, to where it rests."""
+        """Let MuJoCo's own motion carry the beam, with its clamp at `target`, to where it rests."""
         model = self.model
-        model.move_foot(target)
+        model.move_clamp(self._pose(target))
         self._move(departure.timestep, _STEPS)
         self._move(STEP, _LAST_STEPS)
         angles = model.beam.angles(model.data)
-        self._foot_x, self._held = target, None
+        self._p, self._held = target, None
         self._before = None
         if model.out_of_plane() > _IN_PLANE:
             model.relieved()
@@ -155,6 +156,6 @@ class SpatialWalk(Walk[BeamModel]):
             self._look()
             self._departure = None
             if turned(angles, departure.angles) > self._numerics.branch_turn:
-                self.snap_off = departure.foot_x
+                self.snap_off = departure.p
         self._shown = self._state
         self.doubt = None if self._state.settled else "on its way out of the plane"

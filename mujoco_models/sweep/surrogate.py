@@ -5,6 +5,7 @@ from collections.abc import Collection
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.poses import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 
@@ -28,7 +29,7 @@ class Surrogate:
         self._reach, self._moves = reach, _MOVES if follow else 0
         self._angles = np.zeros(len(self.layout.joints))
         self._joints = self._along = self.layout.base.T
-        self._looked: tuple[float, int] | None = None  # with the foot and by the window
+        self._looked: tuple[Pose, int] | None = None  # in which pose of the clamp, by which window
         self._seen: Contacts | None = None
         first, last = min(loaded), max(loaded)
         self._width = last - first
@@ -43,18 +44,17 @@ class Surrogate:
         self.radii = self._model.lookout.radii[self._beads]
         self._none = np.zeros(len(self._beads), dtype=bool)
 
-    def look(self, foot_x: float, angles: Floats) -> Contacts | None:
+    def look(self, pose: Pose, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that."""
-        looked = foot_x, self._model.lookout.window
+        looked = pose, self._model.lookout.window
         if angles is self._angles and looked == self._looked:
             return self._seen
         layout, self._angles, self._looked = self.layout, angles, looked
-        heading = layout.headings + angles.cumsum()
+        heading = layout.headings + (pose.angle + angles.cumsum())
         self._along = np.array([-np.sin(heading), np.cos(heading)])
         self._joints = np.zeros(self._along.shape)
         self._joints[:, 1:] = (layout.chords * self._along)[:, :-1].cumsum(axis=1)
-        self._joints[0] += foot_x + layout.base[0, 0]
-        self._joints[1] += layout.base[0, 1]
+        self._joints += np.array(pose.place(*layout.base[0]))[:, None]
         self._seen = self._contacts()
         for _ in range(self._moves):
             nearer = self._nearer(self._seen)

@@ -47,21 +47,21 @@ def follow(
     """Go to all stations, one after the other."""
     doubts: dict[str, int] = {}
     about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
-    places = {"foot_x": case.foot_x}
+    places = {"foot_x": case.foot_x, **case.way_columns}
     recorder = Recorder(case, source, about, lambda: walk.events, places, begun=begun)
 
-    def row_at(foot_x: float) -> dict[str, Any]:
-        walk.go_to(foot_x)
+    def row_at(p: float) -> dict[str, Any]:
+        walk.go_to(p)
         if walk.doubt:
             doubts[walk.doubt] = doubts.get(walk.doubt, 0) + 1
         return walk.row()
 
-    return visit(case.foot_x / case.beam.length, row_at, recorder, advance, keep)
+    return visit(case.way, row_at, recorder, advance, keep)
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:
-    """The beam, straight, with its foot at the first station of a sweep to the left."""
+    """The beam, straight, with its clamp at the first station of a sweep to the left."""
     beam, obstacle = parts_at_rest(case, settings)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk
-    return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance, numerics)
+    return kind(model, case, settings.tolerance, numerics)

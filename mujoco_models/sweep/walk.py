@@ -5,6 +5,8 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from analytic.problem.case import Case
+from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
@@ -43,12 +45,13 @@ class Walk(Generic[Model]):
     """The beam on its way: the last state on the branch, and the one before it."""
 
     def __init__(
-        self, model: Model, foot_x: float, tolerance: float, numerics: Numerics | None = None
+        self, model: Model, case: Case, tolerance: float, numerics: Numerics | None = None
     ) -> None:
         self.model = model
         self._tolerance = tolerance
         self._numerics = numerics or Numerics()
-        self._foot_x = foot_x
+        self._poses = case.poses
+        self._p = float(case.way[0])  # parameter of the clamp's way; it falls
         self._state = State.straight(len(model.layout.joints))
         self._before: tuple[float, State] | None = None  # on the branch, before the last state
         self._shown = self._state
@@ -64,7 +67,7 @@ class Walk(Generic[Model]):
 
     @property
     def events(self) -> dict[str, float | None]:
-        """Foot positions of what happened on the way [L]."""
+        """Parameters of the clamp's way at which things happened."""
         return {"snap_off": self.snap_off}
 
     def go_to(self, target: float) -> None:
@@ -96,7 +99,8 @@ class Walk(Generic[Model]):
         nearest = contacts.arc_length[contacts.loaded].min(initial=1.0)
         if nearest < layout.first_cell:
             return "the contact is in the first cell from the clamp, which is too coarse"
-        rigid = np.column_stack([np.full(_PLACES, self._foot_x), np.linspace(0, begin, _PLACES)])
+        rigid = layout.vibrissa.at(np.linspace(0, begin, _PLACES))
+        rigid = np.column_stack(model.pose.place(*rigid.T))
         deep = float(model.lookout.radii[0]) - _OVERLOOKED
         near = () if layout.clamp_turns else model.obstacle.near(rigid, deep)
         if any(model.obstacle.clearance(rigid[i])[0] < deep for i in near):
@@ -106,11 +110,11 @@ class Walk(Generic[Model]):
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
         least, bracket = self._numerics.smallest_step, Bracket()
-        step, in_vain = target - self._foot_x, False
+        step, in_vain = target - self._p, False
         while True:
             trial = self._onward(self._in_pace(step), target)
             if bracket:
-                trial = bracket.aim(self._foot_x, self._follows)
+                trial = bracket.aim(self._p, self._follows)
             state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)
@@ -118,21 +122,21 @@ class Walk(Generic[Model]):
                 step *= 2
             else:
                 self._smooth, in_vain = False, True
-                ended = abs(trial - self._foot_x) <= least
-                step = (trial - self._foot_x) / 2
-                if self._dead_end and self._dead_end[0] == self._foot_x:
+                ended = abs(trial - self._p) <= least
+                step = (trial - self._p) / 2
+                if self._dead_end and self._dead_end[0] == self._p:
                     return self._dead_end[1]  # there is no way on by smaller steps
                 if bracket or state.side is not self._state.side or self._jumped(state):
-                    bracket.add(trial, state, self._foot_x)
+                    bracket.add(trial, state, self._p)
             end = bracket.nearest if bracket else trial
-            if ended or (bracket and abs(end - self._foot_x) <= self._least(bracket.beyond)):
-                trouble = self._decide((self._foot_x + end) / 2, target)
+            if ended or (bracket and abs(end - self._p) <= self._least(bracket.beyond)):
+                trouble = self._decide((self._p + end) / 2, target)
                 if trouble is not None:
-                    self._dead_end = self._foot_x, trouble
+                    self._dead_end = self._p, trouble
                     return trouble
-                bracket.leave_behind(self._foot_x, target)
-                step = target - self._foot_x
-            if self._foot_x == target:
+                bracket.leave_behind(self._p, target)
+                step = target - self._p
+            if self._p == target:
                 self._smooth = not in_vain
                 return None
             if self.model.evaluations > limit:
@@ -140,8 +144,8 @@ class Walk(Generic[Model]):
 
     def _onward(self, step: float, target: float) -> float:
         """A step on, or up to the target."""
-        rest = abs(target - self._foot_x) - abs(step)
-        return target if rest < _SAME_PLACE else self._foot_x + step
+        rest = abs(target - self._p) - abs(step)
+        return target if rest < _SAME_PLACE else self._p + step
 
     def _in_pace(self, step: float) -> float:
         """A step that should not shift the contact too far, past corners."""
@@ -150,7 +154,7 @@ class Walk(Generic[Model]):
         (x, before), last = self._before, self._state
         if before.slope is None or last.slope is None or before.slope == last.slope:
             return step
-        taken, turn = abs(self._foot_x - x), abs(last.slope - before.slope)
+        taken, turn = abs(self._p - x), abs(last.slope - before.slope)
         most = taken * max(_PACE * self._numerics.facet_shift / turn, 1.0)
         return float(np.copysign(min(abs(step), most), step))
 
@@ -169,10 +173,10 @@ class Walk(Generic[Model]):
     def _decide(self, where: float, target: float) -> str | None:
         """Go on a little where no neighbour was found: held, or let go; else say what is wrong."""
         last, numerics = self._state, self._numerics
-        ahead = target - self._foot_x
-        foot_x = self._foot_x + np.copysign(min(abs(ahead), numerics.confirm_step), ahead)
-        gone = descend(self.model, foot_x, last, numerics, numerics.descent_steps)
-        rest = self._relax(foot_x, gone)
+        ahead = target - self._p
+        p = self._p + np.copysign(min(abs(ahead), numerics.confirm_step), ahead)
+        gone = descend(self.model, self._pose(p), last, numerics, numerics.descent_steps)
+        rest = self._relax(p, gone)
         if not rest.settled:
             return self._lost_from(last)
         let_go = last.side is Side.NEAR and rest.side in (Side.FAR, Side.PASSED)
@@ -187,7 +191,7 @@ class Walk(Generic[Model]):
                 self._lost = "the object was passed without a contact"
         if let_go and last.load > numerics.load_held:
             self.snap_off = where
-        self._accept(foot_x, rest)
+        self._accept(p, rest)
         self._before = None
         return None
 
@@ -200,36 +204,36 @@ class Walk(Generic[Model]):
             )
         return "no state at rest was found near the last one, and no snap-off"
 
-    def _accept(self, foot_x: float, state: State) -> None:
-        if foot_x != self._foot_x:
-            self._before = self._foot_x, self._state
-        self._foot_x, self._state = foot_x, state
+    def _accept(self, p: float, state: State) -> None:
+        if p != self._p:
+            self._before = self._p, self._state
+        self._p, self._state = p, state
 
-    def _near_rest(self, foot_x: float) -> State:
+    def _near_rest(self, p: float) -> State:
         """From the last state on; what stops a short step, a descent decides."""
-        state = self._relax(foot_x, self._forecast(foot_x), leave=self._state)
+        state = self._relax(p, self._forecast(p), leave=self._state)
         if not self._leaves_its_facet(state):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
-        stayed = self._on_its_facet(foot_x)
+        stayed = self._on_its_facet(p)
         if stayed.settled and not self._leaves_its_facet(stayed):
             return stayed
         # The model has to be in the state that is gone on from.
-        return self._relax(foot_x, state) if self._follows(state) else state
+        return self._relax(p, state) if self._follows(state) else state
 
-    def _on_its_facet(self, foot_x: float) -> State:
+    def _on_its_facet(self, p: float) -> State:
         """At rest on the facet of the last state, if Newton's method finds that there."""
         model, numerics, last = self.model, self._numerics, self._state
-        start, step = State(last.angles, last.forces, slope=last.slope), foot_x - self._foot_x
+        start, step = State(last.angles, last.forces, slope=last.slope), p - self._p
         if abs(step) >= numerics.confirm_step:
             # All of the step at once would carry a stiff contact clear of its facet, and the beam
             # would straighten: a little of it shows how the beam goes along.
-            place, stay = self._foot_x + _LITTLE * step, last.slope
-            near = relax(model, place, start, self._tolerance, numerics, stay=stay)
+            place, stay = self._p + _LITTLE * step, last.slope
+            near = relax(model, self._pose(place), start, self._tolerance, numerics, stay=stay)
             if near.settled and not self._leaves_its_facet(near):
                 angles = last.angles + (near.angles - last.angles) / _LITTLE
                 start = State(angles, near.forces, slope=last.slope)
-        return self._relax(foot_x, start, stay=last.slope)
+        return self._relax(p, start, stay=last.slope)
 
     def _leaves_its_facet(self, state: State) -> bool:
         """Whether the last state rests on a facet between sharp corners, and `state` does not."""
@@ -238,33 +242,37 @@ class Walk(Generic[Model]):
             return False
         return state.slope is None or abs(state.slope - last) > self._numerics.same_facet
 
+    def _pose(self, p: float) -> Pose:
+        """Of the clamp on its way."""
+        return self._poses.at(np.array(p))
+
     def _relax(
-        self, foot_x: float, start: State, leave: State | None = None, stay: float | None = None
+        self, p: float, start: State, leave: State | None = None, stay: float | None = None
     ) -> State:
         """At rest, if Newton's method gets there; it stops where it is sure to leave a state."""
-        model, numerics = self.model, self._numerics
-        state = relax(model, foot_x, start, self._tolerance, numerics, leave=leave, stay=stay)
-        short = abs(foot_x - self._foot_x) < numerics.confirm_step
+        model, numerics, pose = self.model, self._numerics, self._pose(p)
+        state = relax(model, pose, start, self._tolerance, numerics, leave=leave, stay=stay)
+        short = abs(p - self._p) < numerics.confirm_step
         if state.settled or not short or not model.hold_beads():
             return state
         # A bead that slides past a joint may not come to rest; one that stays leans a little.
-        return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, held=True)
+        return relax(model, pose, start, self._tolerance, numerics, leave=leave, held=True)
 
-    def _forecast(self, foot_x: float) -> State:
+    def _forecast(self, p: float) -> State:
         """Where the beam should come to rest, by the solver's surrogate or as it went so far."""
-        guess = self._guess(foot_x)
+        guess = self._guess(p)
         if not guess.forces or not (self._sharp or self._smooth):
             return guess
         foreseen = minimum if self._sharp else forecast
-        return foreseen(self.model, foot_x, guess, self._numerics) or guess
+        return foreseen(self.model, self._pose(p), guess, self._numerics) or guess
 
-    def _guess(self, foot_x: float) -> State:
+    def _guess(self, p: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""
         state = self._state
         if self._before is None:
             return State(state.angles, state.forces, slope=state.slope)
         x, before = self._before
-        ahead = (foot_x - self._foot_x) / (self._foot_x - x)
+        ahead = (p - self._p) / (self._p - x)
         forces, slope = state.forces, state.slope
         last = len(self.model.layout.beads) - 1
         if state.forces and before.forces and max(*state.forces, *before.forces) <= last:
@@ -286,7 +294,7 @@ class Walk(Generic[Model]):
         change = last.side, state.side
         passes = change in _NEIGHBOURS
         if change in _OF_A_CURVED_TIP:
-            rises = state.slope is not None and state.slope > 0
+            rises = state.slope is not None and bool(state.slope > self.model.pose.angle)
             passes = self._pokes(state) and (last.side is not Side.AHEAD or rises)
         return state.settled and near and passes
 
@@ -306,7 +314,7 @@ class Walk(Generic[Model]):
         row: dict[str, Any] = {
             **clamp._asdict(),
             **contacts.as_reading(model.contact_places()),
-            "tip_angle": model.layout.tip_angle(state.angles),
+            "tip_angle": float(model.layout.tip_angle(state.angles) + model.pose.angle),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
@@ -316,5 +324,5 @@ class Walk(Generic[Model]):
             row.update(NOWHERE, status="touches again")
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
-            raise ClampError(self._foot_x, row["discrepancy"], _DISCREPANCY)
+            raise ClampError(model.pose, row["discrepancy"], _DISCREPANCY)
         return row

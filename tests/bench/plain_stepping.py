@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from analytic import Case, Sweep, named_case
+from analytic.problem.poses import along_x
 from mujoco_models import Settings
 from mujoco_models.model.model import BeamModel
 from mujoco_models.sweep.sweep import set_out
@@ -99,7 +100,7 @@ def by_stepping(model: BeamModel, case: Case, w: float, near: bool) -> np.ndarra
 
 def imbalance(model: BeamModel, foot_x: float, angles: np.ndarray) -> np.ndarray:
     """Moments in MuJoCo's own terms: under `discrete` contacts have another stiffness than ours."""
-    model.move_foot(foot_x)
+    model.move_clamp(along_x(0.0).at(np.array(foot_x)))
     model.beam.place(model.data, angles)
     model.data.qvel[:] = 0
     mujoco.mj_forward(model.model, model.data)

@@ -61,7 +61,7 @@ def test_mujoco_slips_off_there():
     case = Case(profile=CIRCLE)
     settings = Settings(segments=10, contour_points=1600, planar=False)
     model = set_out(case, settings).model
-    walk = Walk(model, float(case.foot_x[0]), 1e-8)
+    walk = Walk(model, case, 1e-8)
     tilt = np.radians(1)
     place = slip_off(CIRCLE, tilt)
     for foot_x in np.linspace(0.9, place + 0.02, 30):

@@ -195,7 +195,7 @@ def test_links_that_are_not_searched_have_no_contact(profile):
     touched = 0
     for _ in range(400):
         bends = draw.normal(scale=0.05, size=30) + draw.normal(scale=0.05)
-        model.imbalance(float(draw.uniform(-1.5, 1.5)), bends)
+        model.imbalance(case.poses.at(draw.uniform(-1.5, 1.5, ())), bends)
         found = [contact.geom.tolist() for contact in model.data.contact]
         mujoco.mj_collision(model.model, model.data)
         assert found == [contact.geom.tolist() for contact in model.data.contact]

@@ -19,7 +19,7 @@ def stations(case, settings, numerics=None):
     walk = set_out(case, settings, numerics)
     for foot_x in case.foot_x[15:120]:
         walk.go_to(float(foot_x))
-        yield float(foot_x), walk
+        yield walk
 
 
 @pytest.mark.parametrize("points", [400, 3200, 50_000])
@@ -28,13 +28,13 @@ def test_the_picture_is_mujocos(points, beam):
     """Places, distances, normals and springs, to rounding: also where single precision rounds."""
     case = replace(named_case("catenary"), beam=beam)
     settings = Settings(segments=20, contour_points=points)
-    for number, (foot_x, walk) in enumerate(stations(case, settings)):
+    for number, walk in enumerate(stations(case, settings)):
         contacts = walk.model.contacts()
         if number % 20 or not contacts.loaded.any():
             continue
         order = np.argsort(contacts.touch)
         surrogate = Surrogate(walk.model, contacts.touch.tolist())
-        seen = surrogate.look(foot_x, walk.model.beam.angles(walk.model.data))
+        seen = surrogate.look(walk.model.pose, walk.model.beam.angles(walk.model.data))
         loaded = contacts.loaded[order]
         np.testing.assert_array_equal(seen.touch, contacts.touch[order])
         np.testing.assert_allclose(seen.point, contacts.point[order], atol=4e-15)
@@ -51,9 +51,9 @@ def test_the_picture_is_mujocos(points, beam):
 def test_the_springs_of_other_beams(kind):
     """By quadrature of their stiffness; observed 2e-13 with the rod's tangents."""
     case = named_case("catenary")
-    *_, (foot_x, walk) = stations(case, Settings(beam=kind, segments=20))
+    *_, walk = stations(case, Settings(beam=kind, segments=20))
     surrogate = Surrogate(walk.model, [0])
-    surrogate.look(foot_x, walk.model.beam.angles(walk.model.data))
+    surrogate.look(walk.model.pose, walk.model.beam.angles(walk.model.data))
     moments = walk.model.elastic_moments()
     np.testing.assert_allclose(
         surrogate.elastic_moments(), moments, atol=1e-9 * np.abs(moments).max()
@@ -66,7 +66,7 @@ def test_one_evaluation_confirms_it(name):
     counts = []
     for numerics in (Numerics(), Numerics(forecasts=0)):
         spent = []
-        for _, walk in stations(named_case(name), Settings(segments=20), numerics):
+        for walk in stations(named_case(name), Settings(segments=20), numerics):
             assert walk.doubt is None
             spent.append(walk.model.evaluations)
         counts.append((spent[-1] - spent[4]) / 100)  # the first contact takes more
@@ -76,10 +76,10 @@ def test_one_evaluation_confirms_it(name):
 def test_a_wrong_forecast_does_no_harm(monkeypatch):
     """With springs half as stiff in the surrogate, MuJoCo's balance decides all the same."""
     case, settings = named_case("parabola"), Settings(segments=20, contour_points=800)
-    expected = [walk.row() for _, walk in stations(case, settings)]
+    expected = [walk.row() for walk in stations(case, settings)]
     moments = Surrogate.elastic_moments
     monkeypatch.setattr(Surrogate, "elastic_moments", lambda self: moments(self) / 2)
-    found = [walk.row() for _, walk in stations(case, settings)]
+    found = [walk.row() for walk in stations(case, settings)]
     assert all(row["status"] == "ok" for row in found)
     error = [a["force_y"] - b["force_y"] for a, b in zip(found, expected, strict=True)]
     assert np.abs(error).max() < 1e-6

@@ -19,20 +19,20 @@ SOFT = Settings(segments=20, contour_points=1600, contact_stiffness=1e5)
 
 @pytest.fixture(scope="module")
 def at_the_tip():
-    """The walk with the needle's tip on several beads, and where its foot is."""
+    """The walk with the needle's tip on several beads, and where its clamp is."""
     walk = set_out(NEEDLE, SOFT)
     for foot_x in NEEDLE.foot_x[:22]:
         walk.go_to(float(foot_x))
     assert walk.doubt is None
     assert len(walk._state.forces) > 2
-    return walk, float(foot_x)
+    return walk, walk.model.pose
 
 
 def test_forces_are_the_slope_of_the_energy(at_the_tip):
-    walk, foot_x = at_the_tip
+    walk, pose = at_the_tip
     state = walk._state
     surrogate = Surrogate(walk.model, state.forces, 4)
-    contacts = surrogate.look(foot_x, state.angles)
+    contacts = surrogate.look(pose, state.angles)
     force = np.maximum(-surrogate.contact_stiffness * contacts.distance, 0)
     down = (
         of_links(surrogate.elastic_moments())
@@ -41,26 +41,26 @@ def test_forces_are_the_slope_of_the_energy(at_the_tip):
     for link, turn in enumerate(1e-8 * np.eye(len(down))):
         turn[1:] -= turn[:-1].copy()  # of one link alone
         up, below = (
-            surrogate.energy(surrogate.look(foot_x, state.angles + s * turn)) for s in (1, -1)
+            surrogate.energy(surrogate.look(pose, state.angles + s * turn)) for s in (1, -1)
         )
         assert (below - up) / 2e-8 == pytest.approx(down[link], abs=2e-6)  # rounding over 1e-8
 
 
 def test_a_minimum_is_at_rest_for_mujoco_too(at_the_tip):
     """From far too far ahead; Newton's method on MuJoCo's balance needs dozens of steps there."""
-    walk, foot_x = at_the_tip
+    walk, pose = at_the_tip
     model, state = walk.model, walk._state
     ahead = replace(state, angles=state.angles + 1e-4)
-    found = minimum(model, foot_x, ahead, Numerics())
-    assert np.abs(model.imbalance(foot_x, found.angles)).max() < 1e-8
+    found = minimum(model, pose, ahead, Numerics())
+    assert np.abs(model.imbalance(pose, found.angles)).max() < 1e-8
 
 
 @pytest.mark.parametrize("beads", [0, 30, -60])
 def test_a_contact_is_followed_from_bead_to_bead(at_the_tip, beads):
     """It may have slid on by many since it was seen last."""
-    walk, foot_x = at_the_tip
+    walk, pose = at_the_tip
     model, state = walk.model, walk._state
     one = replace(state, forces={min(state.forces) + beads: state.load})
-    found = minimum(model, foot_x, one, Numerics())
+    found = minimum(model, pose, one, Numerics())
     assert set(found.forces) == set(state.forces)
-    assert np.abs(model.imbalance(foot_x, found.angles)).max() < 1e-8
+    assert np.abs(model.imbalance(pose, found.angles)).max() < 1e-8

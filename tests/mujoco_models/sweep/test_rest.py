@@ -143,8 +143,8 @@ def test_newtons_method_is_quadratic_however_soft_the_contact(contact_stiffness)
     model, found = walk.model, []
     imbalance = model.imbalance
 
-    def noted(foot_x, angles):
-        moments = imbalance(foot_x, angles)
+    def noted(pose, angles):
+        moments = imbalance(pose, angles)
         found.append(np.abs(moments).max())
         return moments
 

@@ -109,7 +109,7 @@ def test_motion_returns_to_the_plane_before_that_place_and_grows_beyond(beam):
     from mujoco_models.sweep.walk import Walk
 
     model: BeamModel = set_out(CIRCLE, replace(COARSE, beam=beam)).model
-    walk = Walk(model, float(CIRCLE.foot_x[0]), 1e-8)  # keeps to the plane, come what may
+    walk = Walk(model, CIRCLE, 1e-8)  # keeps to the plane, come what may
     place = find_events(CIRCLE.profile, CIRCLE.beam).out_of_plane.foot_x
     for foot_x, grows in ((place + 0.05, False), (place - 0.05, True)):
         walk.go_to(foot_x)
@@ -182,7 +182,7 @@ def test_torsional_stiffness_does_not_matter_to_second_order():
         spacing = bead_spacing(segments, CIRCLE.radius, obstacle.largest_curvature)
         cable = Cable(settings, spacing, twist=twist)
         model = BeamModel(cable, CIRCLE.radius, obstacle, settings.contact_stiffness)
-        walk = Walk(model, float(CIRCLE.foot_x[0]), 1e-8)
+        walk = Walk(model, CIRCLE, 1e-8)
         for foot_x in np.linspace(0.9, -0.459, 25):
             walk.go_to(float(foot_x))
         row = walk.row()

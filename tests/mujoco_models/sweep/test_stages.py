@@ -21,14 +21,14 @@ def resting(request):
     angles = model.beam.angles(model.data)
     assert walk.doubt is None
     assert model.contacts().loaded.any()
-    return model, float(foot_x), angles
+    return model, model.pose, angles
 
 
 @pytest.mark.parametrize("turn", [0.0, 1e-6])
 def test_the_balance_is_that_of_mujocos_inverse_dynamics(resting, turn):
     """Without accelerations; `mj_inverse` says what else would have to act."""
-    model, foot_x, angles = resting
-    found = model.imbalance(foot_x, angles - turn)
+    model, pose, angles = resting
+    found = model.imbalance(pose, angles - turn)
     moments, sensed = model.moments().copy(), model.data.sensordata.copy()
     assert (turn > 0) == (np.abs(found).max() > 1e-3)  # not a comparison of zeros
     model.data.qacc[:] = 0
@@ -40,10 +40,10 @@ def test_the_balance_is_that_of_mujocos_inverse_dynamics(resting, turn):
 
 def test_what_is_relieved_is_rounding_of_depths_and_no_more(resting):
     """What turns by rounding make of depths is relieved; of a thousand times as much, that part."""
-    model, foot_x, angles = resting
+    model, pose, angles = resting
     most = model.contact_stiffness * ROUNDING
     for turn, hidden in (1e-14, True), (1e-11, False):
-        model.imbalance(foot_x, angles - turn)
+        model.imbalance(pose, angles - turn)
         static = model.moments()
         pressed, sensed = model.data.efc_force.copy(), model.data.sensordata.copy()
         found = model.relieved()
@@ -61,12 +61,12 @@ def test_what_is_relieved_is_rounding_of_depths_and_no_more(resting):
 
 def test_mujocos_forward_dynamics_relieves_the_same(resting):
     """It lets contacts give way to accelerations: what is out of balance at rest is no more."""
-    model, foot_x, angles = resting
-    model.imbalance(foot_x, angles - 1e-14)
+    model, pose, angles = resting
+    model.imbalance(pose, angles - 1e-14)
     static = np.abs(model.moments()).max()
     mujoco.mj_forward(model.model, model.data)
     assert np.abs(model.moments()).max() < static
     forces = model.data.sensordata.copy()
-    model.imbalance(foot_x, angles - 1e-14)
+    model.imbalance(pose, angles - 1e-14)
     model.relieved()
     np.testing.assert_allclose(model.data.sensordata, forces, atol=static)
