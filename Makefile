@@ -54,7 +54,7 @@ lint: develop    ## format, style, types, import rules
 	$(BIN)/lint-imports
 
 reference: install ## docs/examples/reference/tables: contact states for tests of any engine
-	$(BIN)/vibrissa verify --tables docs/examples/reference/tables
+	$(BIN)/python -m docs.figures.reference_tables docs/examples/reference/tables
 
 size: develop    ## lines of code and docstring, room by room
 	$(BIN)/python -m tests.size
@@ -87,7 +87,7 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/python -m docs.figures.hysteresis results/hysteresis.png
 	$(BIN)/python -m docs.figures.quasi_static results/quasi-static.csv
 	$(BIN)/python -m docs.figures.quasi_static_picture results/quasi-static.csv results/quasi-static.png
-	$(BIN)/vibrissa run catenary --engine exact --figures --out results/pictures
+	$(BIN)/python -m docs.figures.paper catenary results/pictures
 	$(BIN)/vibrissa reconstruct catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
 	for case in catenary parabola tip-only; do \

@@ -28,7 +28,7 @@ from analytic import (
     with_friction,
 )
 from compare import compare
-from compare.show.figures.paper import contact_length
+from docs.figures.paper import contact_length
 
 OBJECT = circle(1.0, lowest=(0, 0.4))
 BEYOND = {

@@ -57,7 +57,7 @@ COMMANDS = (
     (0, "list"),
     (2, "inspect mine.toml --float32"),  # MuJoCo Warp is an extra
     (0, "inspect sound-chain --out inspected"),
-    (0, "run mine.toml --engine exact --certified --figures --out exact"),
+    (0, "run mine.toml --engine exact --certified --out exact"),
     (0, "run space.toml --out space"),
     (1, "run mine.toml --film --out a"),
     (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),

@@ -41,7 +41,6 @@ class Asked:
     budget: bool = False
     target: float | None = None
     frames: int | None = None  # of a film; None for no film
-    figures: bool = False
     certified: bool = False
     frame: "Frame" = "world"  # of the components in space
 
@@ -54,7 +53,7 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
         start_server(SWEEPERS)  # it imports while we do
     exact: AnyReadings | None = None
     if not (asked.sweep_only and job.engines):
-        exact = solved(job, folder, asked.certified, asked.figures)
+        exact = solved(job, folder, asked.certified)
     if isinstance(job, Job) and job.engines not in ((), ("mujoco",)):
         return _swept_by_engines(job, exact, folder, asked.budget)
     if exact is None:

@@ -71,9 +71,6 @@ def run(
         typer.Option(min=2, max=2000, help="Of the film."),
         For(ANY_CASE, (WITH_MUJOCO, "--film")),
     ] = 48,
-    figures: Annotated[
-        bool, flag("--figures", "Draw the paper's figures of it too."), For(IN_THE_PLANE, (EXACT,))
-    ] = False,
     certified: Annotated[
         bool,
         flag("--certified", "Check the closed form's stations by integration from the clamp."),
@@ -112,7 +109,7 @@ def run(
             from compare.commands.pipeline import Asked, carry_out
 
         length = frames if film else None
-        asked = Asked(sweep_only, budget, target, length, figures, certified, frame)
+        asked = Asked(sweep_only, budget, target, length, certified, frame)
         return AGREES if carry_out(job, folder, asked) else DISAGREES
 
 

@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from analytic import Readings, reconstruct
+from analytic import Readings
 from analytic.space import (
     Body,
     Cloud,
@@ -20,27 +20,18 @@ from analytic.space.problem.readings import FORCE, MOMENT
 from compare.commands import terminal
 from compare.commands.output import waiting, warn
 from compare.commands.sweep_lines import print_sweep
-from compare.read.job import AnyJob, Job
+from compare.read.job import AnyJob
 from compare.show.figures.space import sweep_in_space
 from compare.show.scene import SweepScene
 
 AnyReadings: TypeAlias = Readings | SpatialReadings
 
 
-def solved(job: AnyJob, folder: Path, certified: bool, figures: bool) -> AnyReadings:
-    """The closed form's sweep, written; the paper's figures of it too, if wanted."""
+def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
+    """The closed form's sweep, written."""
     with waiting("solving"):
         exact: AnyReadings = job.solve(certified)
         exact.write(folder / "analytic.parquet")
-    if figures and isinstance(job, Job) and isinstance(exact, Readings):
-        from compare.show.figures.geometry import reconstruction
-        from compare.show.figures.paper import paper_figures
-
-        drawn = paper_figures(job.case, exact)
-        if not job.case.beam.varies:
-            drawn["shapes"] = reconstruction(exact, reconstruct(exact))
-        for name, figure in drawn.items():
-            terminal.keep(folder / f"{name}.png", figure)
     return exact
 
 

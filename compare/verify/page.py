@@ -6,9 +6,8 @@ from itertools import groupby
 
 from matplotlib.figure import Figure
 
-from compare.show.document import Document, Items, Picture, Section, Table, Text, Tile, Verdict
+from compare.show.document import Document, Picture, Section, Table, Text, Tile, Verdict
 from compare.show.style import BLUE, FAINT, GREEN, ORANGE, PAGE_WIDTH, PINK, SMALL
-from compare.verify.peers import PeerRow
 from compare.verify.record import Row, State
 
 _COLOURS: dict[State, str] = {
@@ -21,7 +20,7 @@ _LEAST = 1e-16  # of a difference that is drawn
 _LINE = 0.19  # inches
 
 
-def verified(rows: Sequence[Row], peers: Sequence[PeerRow] = ()) -> Document:
+def verified(rows: Sequence[Row]) -> Document:
     """All that is said of them."""
     sources = {row.source for row in rows}
     contact = {row.source for row in rows if row.contact}
@@ -30,7 +29,6 @@ def verified(rows: Sequence[Row], peers: Sequence[PeerRow] = ()) -> Document:
         *(Tile(state, str(_count(rows, state)), f"of {len(rows)} numbers") for state in _COLOURS),
     ]
     picture = Picture("verify", {_CAPTION: partial(drawn, rows)}, _CAPTION)
-    others = [Section("peers", "Peers' own cases", [*peer_blocks(peers), _reasons(peers)])]
     return Document(
         "Checked by strangers",
         "What others printed, measured or derived, beside what is computed here.",
@@ -38,7 +36,6 @@ def verified(rows: Sequence[Row], peers: Sequence[PeerRow] = ()) -> Document:
         [
             Section("numbers", "Number by number", [table(rows)]),
             Section("picture", "How far apart", [picture]),
-            *(others if peers else []),
             Section("sources", "Sources", [_sources(rows)]),
             Section("meaning", "How to read it", [Text(_MEANING)]),
         ],
@@ -108,28 +105,6 @@ def drawn(rows: Sequence[Row]) -> Figure:
     ax.grid(axis="x", color=FAINT, alpha=0.35, linewidth=0.6)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
-
-
-def peer_blocks(peers: Sequence[PeerRow]) -> tuple[Table, Items]:
-    """One line a number of theirs, and what could not be run."""
-    head = ("peer and number", "published", "theirs here", "exact", "our chain")
-    lines = [
-        (
-            *(f"{row.peer}: {row.what}", row.published[:11], _number(row.run)),
-            *(_number(row.exact), _number(row.mujoco)),
-        )
-        for row in peers
-    ]
-    table = Table("What peers publish of their own cases, and what is found here", head, lines)
-    return table, Items(list(dict.fromkeys(filter(None, (row.trouble for row in peers)))))
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.7g}"
-
-
-def _reasons(peers: Sequence[PeerRow]) -> Items:
-    return Items(list(dict.fromkeys(f"{row.peer}, {row.case}: {row.why}" for row in peers)))
 
 
 def _why(row: Row) -> str:

@@ -1,7 +1,11 @@
 """Figures 12, 14, 15 and 16 of Behn's group, redrawn from the solver for any case.
 
 C. Will, J. Steigenberger, C. Behn, *Quasi-static object scanning using technical vibrissae*.
+``python -m docs.figures.paper CASE DIR`` writes them, and the vibrissa at some stations.
 """
+
+import sys
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,11 +18,14 @@ from analytic import (
     find_events,
     reconstruct,
     reconstruct_by_decision,
+    solve_sweep,
     surplus,
 )
+from compare.read.case import load_job
 from compare.show import style
-from compare.show.figures.geometry import at_equal_scales
+from compare.show.figures.geometry import at_equal_scales, reconstruction
 from compare.show.figures.over_foot import foot, unit
+from compare.show.page import save_figure
 
 _A, _B = style.PHASE_COLOURS["tip"], style.PHASE_COLOURS["tangent"]
 
@@ -33,6 +40,7 @@ def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
         "figure-14": profile(readings),
         "figure-15": observables(readings),
         "figure-16": reconstruction_error(readings),
+        "shapes": reconstruction(readings, reconstruct(readings)),
     }
 
 
@@ -140,3 +148,10 @@ def _error(ax: Axes, readings: Readings) -> None:
         ax.semilogy(foot(readings), shown, ".", markersize=3, color=colour, label=method)
     ax.set_ylabel("error of the contact point / $L$")
     ax.legend(fontsize=style.SMALL, frameon=False)
+
+
+if __name__ == "__main__":
+    given, folder = load_job(sys.argv[1]).case, Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, figure in paper_figures(given, solve_sweep(given)).items():
+        print(save_figure(figure, folder / f"{name}.png"))

@@ -1,6 +1,10 @@
-"""Reference tables that any engine can be held against, without this project installed."""
+"""Reference tables that any engine can be held against, without this project installed.
+
+``python -m docs.figures.reference_tables DIR`` writes them.
+"""
 
 import hashlib
+import sys
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -121,3 +125,10 @@ def _fnv(data: bytes) -> int:
     for byte in data:
         found = (found ^ byte) * _PRIME % _WORD
     return found
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in write_tables(folder):
+        print(path)

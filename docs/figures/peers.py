@@ -1,18 +1,27 @@
-"""Other projects' own published cases: what they print, what their engines give here, and ours."""
+"""Other projects' own published cases: what they print, what their engines give here, and ours.
+
+``python -m docs.figures.peers DIR`` prints them, and writes ``peers.html`` and ``peers.csv``.
+"""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
+import pandas as pd
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from analytic.problem.beam import Beam
 from analytic.space.checks.rod import integrate_rod
+from compare.commands import terminal
+from compare.show.document import Document, Items, Section, Table, Verdict
+from compare.show.html import html
 from compare.verify import rods
 from mujoco_models import Settings, load_tip
 
@@ -204,3 +213,47 @@ CASES = (
     *(_exudyn, _pyelastica, _newton),
 )
 """Each makes its rows. SimBenchmark's have rigid bodies alone: nothing of them applies to a rod."""
+
+
+def summary(rows: Sequence[PeerRow]) -> tuple[Table, Items]:
+    """One line a number of theirs, and what could not be run."""
+    head = ("peer and number", "published", "theirs here", "exact", "our chain")
+    lines = [
+        (
+            *(f"{row.peer}: {row.what}", row.published[:11], _number(row.run)),
+            *(_number(row.exact), _number(row.mujoco)),
+        )
+        for row in rows
+    ]
+    table = Table("What peers publish of their own cases, and what is found here", head, lines)
+    return table, Items(list(dict.fromkeys(filter(None, (row.trouble for row in rows)))))
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.7g}"
+
+
+def page(rows: Sequence[PeerRow]) -> Document:
+    """All that is said of them."""
+    reasons = Items(list(dict.fromkeys(f"{row.peer}, {row.case}: {row.why}" for row in rows)))
+    ran = sum(row.run is not None for row in rows)
+    said = Verdict(ran == len(rows), f"{ran} of {len(rows)} numbers were made by their engines.")
+    lead = "What other projects publish of their own test cases, beside what is computed here."
+    return Document(
+        "Peers' own cases",
+        lead,
+        said,
+        [
+            Section("numbers", "Number by number", summary(rows)),
+            Section("reasons", "Why they differ", [reasons]),
+        ],
+    )
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    found = [row for case in CASES for row in case()]
+    terminal.show(*summary(found))
+    terminal.keep(folder / "peers.html", html(page(found)))
+    terminal.keep(folder / "peers.csv", pd.DataFrame([asdict(row) for row in found]))

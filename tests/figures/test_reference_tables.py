@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from compare.verify.tables import write_tables
+from docs.figures.reference_tables import write_tables
 
-HERE = Path(__file__).parents[3] / "docs" / "examples" / "reference"
+HERE = Path(__file__).parents[2] / "docs" / "examples" / "reference"
 TABLES = HERE / "tables"
 NAMES = ("contact", "friction", "sweep", "event", "curved", "leaning", "whisking", "space")
 PLANTED = 100

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from compare.verify import peers, record
-from tests.compare.command import vibrissa
+from compare.show.html import html
+from docs.figures import peers
 
 
 @pytest.fixture
@@ -60,16 +60,9 @@ def test_an_engine_that_fails_is_a_line(monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_command_shows_them(tmp_path, monkeypatch):
-    (quick,) = (one for one in record.sources() if one["model"] == "level")
-    monkeypatch.setattr(record, "sources", lambda: [quick])
-    done = vibrissa("verify", "--peers", "--out", tmp_path, cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
-    assert "cosseratbench" in done.stdout
-    assert "our chain" in done.stdout  # also on a terminal of 80 columns
-    assert "Newton" in (tmp_path / "peers.csv").read_text()
-    assert "Peers' own cases" in (tmp_path / "report.html").read_text().replace("&#39;", "'")
-
-
-def test_tables_are_ours_alone(tmp_path):
-    vibrissa("verify", "--peers", "--tables", tmp_path, cwd=tmp_path).refused("--peers", "--tables")
+def test_the_page_shows_them(missing):
+    found = [row for made in peers.CASES for row in made()]
+    table, absent = peers.summary(found)
+    assert {row[0].partition(":")[0] for row in table.rows} >= {"cosseratbench", "Newton"}
+    assert "cosseratbench is not installed: pip install cosseratbench" in absent.said
+    assert "Peers&#39; own cases" in html(peers.page(found))
