@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import logsumexp
 
 from analytic.problem.arrays import Floats
 
@@ -18,6 +19,8 @@ _MEMORY = np.array([0.5, 0.75, 0.87, 0.93, 0.965, 0.983, 0.992, 0.9965, 0.9995])
 _SIZES = np.array([0.1, 0.3, 1, 3, 10, 30, 1e2, 1e3, 1e4, 1e5])  # variance over that of the white
 _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZES)])
 _WHITE = 5.0  # times as likely beforehand as all that remembers
+_LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
+_PRIOR = _LONG / _LONG.sum() / _WHITE
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _DRAWS = 400  # of the noise, over which the estimate is averaged
 _AT_ONCE = 2_000_000  # numbers in memory
@@ -64,6 +67,8 @@ class Estimated:
     numbers: Floats  # shape (k,)
     covariance: Floats  # shape (k, k)
     noise: NoiseFound
+    by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
+    likelihood: float  # logarithm of the readings' probability, but for a constant
 
 
 def estimate(
@@ -73,98 +78,151 @@ def estimate(
     uncertain: Floats,
     least: float = 0.0,
     seed: int = 0,
+    rows: Sequence[int] | None = None,
 ) -> Estimated:
     """The numbers that explain readings best, whatever their noise remembers.
 
     Parameters
     ----------
     readings : array, shape (n, channels)
-        In order, over their noise as far as that is known.
+        In order, over their noise as far as that is known; one pass after the other.
     by_number : array, shape (n, channels, k)
         Their derivatives by the numbers sought.
     nuisances : array, shape (n, channels, z)
-        The same by what else may be off, as a sensor's zero.
+        The same by what else may be off in each pass on its own, as a sensor's zero.
     uncertain : array, shape (z,)
         The standard uncertainty of that.
     least : float
         Intervals are no narrower than white noise of this standard deviation makes them.
     seed : int
         Of the draws.
+    rows : sequence of int, optional
+        How many stations each pass has; by default all are of one. Noise of one pass does not
+        remember that of another, but is of one kind in all.
     """
     known = by_number.shape[2]
+    rows = [len(readings)] if rows is None else rows
     flat = by_number.reshape(readings.size, known)
     start = np.linalg.lstsq(flat, readings.ravel(), rcond=None)[0]
     readings = readings - by_number @ start
-    hum = _hum(readings)
+    hum = _hum(max(np.split(readings, np.cumsum(rows)[:-1]), key=len))
     if hum:
-        line = _line(len(readings), readings.shape[1], hum)
+        line = np.concatenate([_line(n, readings.shape[1], hum) for n in rows])
         nuisances = np.concatenate([nuisances, line], axis=2)
         uncertain = np.append(uncertain, np.full(line.shape[2], np.inf))
     design = np.concatenate([by_number, nuisances], axis=2)
     sizes = np.sqrt(np.einsum("ncm,ncm->m", design, design))
     sizes[sizes == 0] = 1.0
-    gram, root = _gram(np.concatenate([design / sizes, readings[:, :, None]], axis=2))
-    prior = np.zeros(len(sizes))
-    prior[known:] = 1 / (uncertain * sizes[known:]) ** 2
-    freedom = len(readings) - int(np.sum(prior == 0))
-    square, likely = _likely(gram + np.diag([*prior, 0]), root, freedom)
-    precision, toward = np.diag(prior) + np.zeros((_DRAWS, 1, 1)), np.zeros((_DRAWS, len(sizes)))
+    gram, root = _gram(np.concatenate([design / sizes, readings[:, :, None]], axis=2), rows)
+    prior = np.zeros(len(sizes) + 1)
+    prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
+    normal = gram + np.diag(prior)
+    # The noise is what each pass's own numbers leave: passes that differ are no noise.
+    left, logarithm = _without_nuisances(normal, 0)
+    freedom = len(readings) - len(rows) * int(np.sum(prior[:-1] == 0))
+    square, likely = _likely(left.sum(axis=0), root[:, None] + logarithm.sum(axis=0), freedom)
+    shared, logarithm = _without_nuisances(normal, known)
+    left = _without_nuisances(shared.sum(axis=0, keepdims=True), 0)[0][0]
+    likelihood = _likelihood(left, root[:, None] + logarithm.sum(axis=0), len(readings))
+    systems = np.diag(prior) + np.zeros((len(rows), _DRAWS, 1, 1))
     draw = np.random.default_rng(seed)
     for channel in range(readings.shape[1]):
         at = draw.choice(len(_GRID), size=_DRAWS, p=likely[:, channel])
         variance = square[at, channel] / draw.chisquare(freedom, size=_DRAWS)
-        precision += gram[at, channel, :-1, :-1] / variance[:, None, None]
-        toward += gram[at, channel, :-1, -1] / variance[:, None]
-    covariances = np.linalg.pinv(precision, hermitian=True)
-    numbers = np.einsum("dij,dj->di", covariances, toward)
-    spread = covariances.mean(axis=0) + np.cov(numbers.T).reshape(2 * sizes.shape)
-    if least:
-        white = np.diag(prior) + gram[0, :, :-1, :-1].sum(axis=0) / least**2
-        narrow = np.diag(np.linalg.pinv(white, hermitian=True)) / np.diag(spread)
-        spread *= np.sqrt(np.outer(*2 * [np.maximum(1.0, narrow)]))
+        systems += gram[:, at, channel] / variance[:, None, None]
+    one_by_one = _without_nuisances(systems, known)[0]
+    white = np.diag(prior) + gram[:, :1].sum(axis=2) / (least or _NOISELESS) ** 2
+    narrowest = _without_nuisances(white, known)[0][:, 0]
+    together = _posterior(one_by_one.sum(axis=0), narrowest.sum(axis=0))
+    by_pass = [_posterior(*one) for one in zip(one_by_one, narrowest, strict=True)]
+    size = sizes[:known]
+
+    def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+        return start + found[0] / size, found[1] / np.outer(size, size)
+
     return Estimated(
-        start + (numbers.mean(axis=0) / sizes)[:known],
-        (spread / np.outer(sizes, sizes))[:known, :known],
+        *scaled(together),
         _described(likely, hum),
+        tuple(scaled(one) for one in by_pass),
+        likelihood,
     )
 
 
-def _gram(columns: Floats) -> tuple[Floats, Floats]:
+def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
     """Products of the columns whitened by each noise of the grid, and its log determinants.
 
-    Kalman's filter of the correlated part, shape (n, channels, m) to (grid, channels, m, m).
+    Kalman's filter of the correlated part, shape (n, channels, m) to (passes, grid, channels, m,
+    m). All passes go at once, the longest first, so that those at work are always the first ones.
     """
-    n, channels, m = columns.shape
+    _, channels, m = columns.shape
+    order = np.argsort(rows, kind="stable")[::-1]
+    begins = (np.cumsum(rows) - rows)[order]
+    lengths = np.asarray(rows)[order]
     rho, size = _GRID.T
-    variance, expected = size.copy(), np.zeros((len(rho), channels, m))
-    products, logarithm = np.zeros((len(rho), channels, m, m)), np.zeros(len(rho))
-    for some in np.array_split(columns, n * expected.size // _AT_ONCE + 1):
-        white = np.empty((len(some), *expected.shape))
-        for new, row in zip(white, some, strict=True):
+    variance, expected = size.copy(), np.zeros((len(rows), len(rho), channels, m))
+    products, logarithm = np.zeros((*expected.shape, m)), np.zeros(len(rho))
+    steps = np.arange(lengths[0])
+    for some in np.array_split(steps, lengths[0] * expected.size // _AT_ONCE + 1):
+        white = np.zeros((len(some), *expected.shape))
+        for new, step in zip(white, some.tolist(), strict=True):
+            working = int(np.sum(lengths > step))
+            new, now = new[:working], expected[:working]
             total = 1 + variance
-            np.subtract(row, expected, out=new)
-            expected += (variance / total)[:, None, None] * new
-            expected *= rho[:, None, None]
+            np.subtract(columns[begins[:working] + step, None], now, out=new)
+            now += (variance / total)[:, None, None] * new
+            now *= rho[:, None, None]
             new /= np.sqrt(total)[:, None, None]
-            logarithm += np.log(total)
+            logarithm += working * np.log(total)
             variance = rho**2 * variance / total + size * (1 - rho**2)
-        rows = white.transpose(1, 2, 0, 3)
-        products += rows.transpose(0, 1, 3, 2) @ rows
-    return products, logarithm
+        stations = white.transpose(1, 2, 3, 0, 4)
+        products += stations.swapaxes(-1, -2) @ stations
+    found = np.empty_like(products)
+    found[order] = products
+    return found, logarithm
 
 
-def _likely(gram: Floats, root: Floats, freedom: int) -> tuple[Floats, Floats]:
+def _without_nuisances(gram: Floats, known: int) -> tuple[Floats, Floats]:
+    """Normal equations (passes, some, ..., m, m) without the columns from `known` to the last.
+
+    And the logarithm of the determinant of what is left out.
+    """
+    kept = np.array([*range(known), gram.shape[-1] - 1])
+    values, vectors = np.linalg.eigh(gram[..., known:-1, known:-1])
+    values = np.maximum(values, _RANK * values[..., -1:].max(axis=1, keepdims=True))
+    along = vectors.swapaxes(-1, -2) @ gram[..., known:-1, :][..., kept]
+    left = gram[..., kept, :][..., kept] - along.swapaxes(-1, -2) @ (along / values[..., None])
+    return left, np.log(values).sum(axis=-1)
+
+
+def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:
+    """Mean and covariance of the numbers, of the normal equations of all draws of the noise.
+
+    Intervals are no narrower than the white noise makes them whose normal equations are given too.
+    """
+    covariances = np.linalg.pinv(systems[:, :-1, :-1], hermitian=True)
+    numbers = np.einsum("dij,dj->di", covariances, systems[:, :-1, -1])
+    spread = covariances.mean(axis=0)
+    spread += np.cov(numbers.T).reshape(spread.shape)
+    narrow = np.diag(np.linalg.pinv(white[:-1, :-1], hermitian=True)) / np.diag(spread)
+    spread *= np.sqrt(np.outer(*2 * [np.maximum(1.0, narrow)]))
+    return numbers.mean(axis=0), spread
+
+
+def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, Floats]:
     """Sums of squares and likelihoods, each shape (grid, channels)."""
-    values, vectors = np.linalg.eigh(gram[..., :-1, :-1])
-    values = np.maximum(values, _RANK * values[..., -1:].max(axis=0))
-    along = np.einsum("gcij,gci->gcj", vectors, gram[..., :-1, -1])
-    explained = (along**2 / values).sum(axis=-1)
-    square = np.maximum(gram[..., -1, -1] - explained, freedom * _NOISELESS**2)
-    logarithms = freedom * np.log(square) + root[:, None] + np.log(values).sum(axis=-1)
-    prior = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories, of which one sweep shows least
-    logarithms[1:] -= 2 * np.log(prior / prior.sum() / _WHITE)
+    square = np.maximum(left[..., 0, 0], freedom * _NOISELESS**2)
+    logarithms = freedom * np.log(square) + determinants
+    logarithms[1:] -= 2 * np.log(_PRIOR)
     likely = np.exp((logarithms.min(axis=0) - logarithms) / 2)
     return square, likely / likely.sum(axis=0)
+
+
+def _likelihood(left: Floats, determinants: Floats, stations: int) -> float:
+    """The readings' probability with the best numbers, whatever the noise is like."""
+    square = np.maximum(left[..., 0, 0], stations * _NOISELESS**2)
+    logarithms = stations * np.log(square) + determinants
+    logarithms[1:] -= 2 * np.log(_PRIOR)
+    return float(logsumexp(-logarithms / 2, axis=0).sum())
 
 
 def _hum(left: Floats) -> float:

@@ -1,5 +1,7 @@
 """Jitter of the foot: it moves all readings of a station along their slopes at once."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
@@ -9,7 +11,9 @@ _CLEARLY = 4.0  # standard deviations; by chance once in 10^4 sweeps
 _ROUNDS = 100  # of expectation and maximum: 1e-3 of the sizes
 
 
-def foot_jitter(left: Floats, slopes: Floats) -> tuple[float, Floats]:
+def foot_jitter(
+    left: Floats, slopes: Floats, rows: Sequence[int] | None = None
+) -> tuple[float, Floats]:
     """Standard deviation of the foot's place, and what each reading has of its own.
 
     By the EM algorithm on differences between neighbouring stations, in which what is smooth
@@ -21,6 +25,8 @@ def foot_jitter(left: Floats, slopes: Floats) -> tuple[float, Floats]:
         What a fit leaves, over some sizes.
     slopes : array, shape (n, readings)
         Of the readings over the foot position, over the same.
+    rows : sequence of int, optional
+        How many stations each pass has; by default all are of one.
 
     Returns
     -------
@@ -29,8 +35,9 @@ def foot_jitter(left: Floats, slopes: Floats) -> tuple[float, Floats]:
     own : array, shape (readings,)
         Over the sizes.
     """
-    steps = np.diff(left, axis=0) / np.sqrt(2)
-    ways = (slopes[1:] + slopes[:-1]) / 2
+    between = np.cumsum([len(left)] if rows is None else rows)[:-1] - 1  # passes: no steps
+    steps = np.delete(np.diff(left, axis=0) / np.sqrt(2), between, axis=0)
+    ways = np.delete((slopes[1:] + slopes[:-1]) / 2, between, axis=0)
     own = (np.median(np.abs(steps), axis=0) / MEDIAN_OF_NORMAL) ** 2
     one, other = np.triu_indices(len(own), 1)
     sizes = np.sqrt(own)

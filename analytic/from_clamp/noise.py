@@ -1,6 +1,6 @@
 """Noise of the clamp readings: given, or estimated from the sweep itself."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -42,13 +42,13 @@ def scatter(values: Floats) -> float:
     return float(max(noise, _ROUND_OFF * np.abs(values).max()))
 
 
-def relative_noise(readings: Readings, level: float) -> dict[str, float]:
+def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dict[str, float]:
     """Noise in proportion to each clamp reading's largest magnitude, as `reconstruct` takes it.
 
     Parameters
     ----------
-    readings : Readings
-        Whose magnitudes count.
+    readings : Readings, or a sequence of them
+        Whose magnitudes count, of several passes the largest of all.
     level : float
         Standard deviation over largest magnitude, as 0.01 for one per cent.
 
@@ -65,7 +65,11 @@ def relative_noise(readings: Readings, level: float) -> dict[str, float]:
     if isinstance(level, bool | str) or not 0 <= level < 1:
         remedy = "it is a share of each reading's largest magnitude"
         raise InputError("noise", level, "between 0 and 1", remedy)
-    return {name: float(level) * largest(readings.values(name)) for name in CLAMP_READINGS}
+    passes = [readings] if isinstance(readings, Readings) else readings
+    return {
+        name: float(level) * max(largest(one.values(name)) for one in passes)
+        for name in CLAMP_READINGS
+    }
 
 
 def checked_noise(noise: object, columns: tuple[str, ...] = SENSED) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """The object from the clamp readings alone (paper, section 5)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -154,6 +154,27 @@ def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
 def _likely(readings: Readings, loaded: Booleans) -> str:
     likely = likely_mistakes(readings, loaded)
     return f"; likely {' or '.join(dict.fromkeys(likely))}" if likely else ""
+
+
+def scatter_of_contacts(passes: Sequence[Readings], found: Sequence[pd.DataFrame]) -> float | None:
+    """Median distance, over the first pass's stations, of contacts from their mean over passes.
+
+    Those of the other passes are interpolated; None if no foot position is common to two.
+    """
+    at = passes[0].values("foot_x")
+    places = []
+    for one, table in zip(passes, found, strict=True):
+        foot_x, x, y = one.values("foot_x"), *table[["contact_x", "contact_y"]].to_numpy().T
+        there = np.isfinite(x)
+        order = np.flatnonzero(there)[np.argsort(foot_x[there])]
+        if order.size:
+            ends = {"left": np.nan, "right": np.nan}
+            places.append([np.interp(at, foot_x[order], v[order], **ends) for v in (x, y)])
+    common = np.array(places)
+    common = common[:, :, np.isfinite(common).all(axis=(0, 1))] if places else np.empty((0, 2, 0))
+    if len(common) < 2 or not common.size:
+        return None
+    return float(np.median(np.sqrt(np.sum(np.var(common, axis=0, ddof=1), axis=0))))
 
 
 def clearly_loaded(readings: Readings) -> Booleans:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
+from compare.commands.kinds import A_RIG, For, no_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -24,8 +24,12 @@ KNOWN = "a sweep past a known object"
 
 def calibrate(
     context: typer.Context,
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Readings past a known object, Parquet or CSV.")
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...",
+            help="Passes past a known object, Parquet or CSV, or a folder that `rig` wrote.",
+        ),
     ],
     case: CaseName,
     fit: Annotated[
@@ -49,12 +53,12 @@ def calibrate(
 ) -> int:
     """Find what is unknown of a vibrissa, past a known object.
 
-    The case has the object, and all that is known of vibrissa, clamp and friction. Exit code 1: the
-    fit leaves more than the noise.
+    The case has the object, and all that is known of vibrissa, clamp and friction. Several passes
+    are pooled. Exit code 1: the fit leaves more than the noise, or passes do not say the same.
     """
     level = number_or_auto("--noise", noise)
-    require_readings([file])
-    require_use(context, KNOWN, *([] if no_rigs([file]) and not column else [A_RIG]))
+    first, files = files[0], pass_files(files)
+    require_use(context, KNOWN, *([] if no_rigs(files) and not column else [A_RIG]))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal
@@ -65,12 +69,16 @@ def calibrate(
     from compare.show.calibration import calibration_document, calibration_summary
 
     known = load_job(case).case
-    readings = without_dropouts(read_measured(file, None, column or (), known.beam, direction))
+    passes = [
+        without_dropouts(read_measured(file, None, column or (), known.beam, direction))
+        for file in files
+    ]
     with waiting("fitting"):
-        sizes = None if level == "auto" else relative_noise(readings, level)
-        found = calibrate_case(readings, known, words(fit), sizes)
-    with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
-        note_rows(readings)
+        sizes = None if level == "auto" else relative_noise(passes, level)
+        found = calibrate_case(passes, known, words(fit), sizes)
+    with output_folder(out or Path("results") / f"{distinct_name(first)}-calibrated") as folder:
+        for one in passes:
+            note_rows(one)
         terminal.show(*calibration_summary(found))
         terminal.keep(folder / "calibration.json", calibration_document(found))
     return AGREES if found.explains else DISAGREES

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
+from compare.commands.kinds import (
+    A_RIG,
+    For,
+    are_passes,
+    no_rigs,
+    pass_files,
+    require_readings,
+    require_use,
+)
 from compare.commands.options import (
     BeamFile,
     Columns,
@@ -34,7 +42,11 @@ def compare(
         str, typer.Argument(help="A case, for its closed form, or a file of readings.")
     ],
     candidates: Annotated[
-        list[Path], typer.Argument(metavar="CANDIDATE...", help="Readings to compare with it.")
+        list[Path],
+        typer.Argument(
+            metavar="CANDIDATE...",
+            help="Readings to compare with it, or a folder that `rig` wrote.",
+        ),
     ],
     out: Annotated[
         Path | None, out_folder("results/REFERENCE-CANDIDATE, of several results/side-by-side")
@@ -86,14 +98,16 @@ def compare(
     The limits are those of --tolerances, else the case's. The sweeps are in space if the reference
     is: a case file with [body], or readings of such a case. Several files, of engines or rigs, are
     compared with the reference and with each other; there --column, --beam and --direction hold for
-    those of rigs.
+    those of rigs. Passes that `rig` wrote are compared as one: their mean, with their scatter.
     """
+    first, candidates = candidates[0], pass_files(candidates)
+    passes = len(candidates) > 1 and are_passes(candidates)
     job = None if Path(reference).suffix.lower() in TABLES else load_case(reference)
     stored = [Path(reference)] if job is None else []
     require_readings([*stored, *candidates])
-    kind = _kind(job, stored, candidates)
+    kind = _kind(job, stored, candidates[:1] if passes else candidates)
     raw = kind == ONE and bool(column or reference_column)  # then our files are read as a rig's
-    rigs = raw or not no_rigs([*stored, *candidates])
+    rigs = raw or passes or not no_rigs([*stored, *candidates])
     require_use(context, kind, *([_STORED] if stored else []), *([A_RIG] if rigs else []))
     numbers = number_or_auto("--offset", offset), number_or_auto("--noise", noise)
     with waiting("comparing"):
@@ -105,13 +119,18 @@ def compare(
             return comparing.keep_side_by_side(several, out or Path("results") / "side-by-side")
         other = replace(rig, columns=reference_column or (), beam=reference_beam)
         expected = comparing.expected(job, Path(reference), kind == SPACE, other)
-        measured = comparing.measured(candidates[0], expected, rig)
+        repeated = comparing.mean_of(candidates, expected, rig) if passes else None
+        if repeated is None:
+            measured = comparing.measured(candidates[0], expected, rig)
+        else:
+            measured = repeated.mean
         found = comparing.compared(expected, measured, job, tolerances, numbers, frame)
         if budget is not None or uncertainty is not None or job is not None:
             found = comparing.validated(found, job, uncertainty, budget)
     called = distinct_name(Path(reference)) if job is None else job.case.name
-    default = Path("results") / f"{called}-{distinct_name(candidates[0])}"
-    return comparing.keep_comparison(found, out or default, None if job is None else job.body)
+    default = Path("results") / f"{called}-{distinct_name(first)}"
+    body = None if job is None else job.body
+    return comparing.keep_comparison(found, out or default, body, repeated)
 
 
 def _kind(job: "AnyJob | None", stored: list[Path], candidates: list[Path]) -> str:

@@ -18,6 +18,7 @@ from compare.commands.sweeping import AnyReadings
 from compare.comparison import Comparison, compare
 from compare.explain.budget import Budget
 from compare.judge.tolerances import SpatialTolerances, Tolerances
+from compare.measure.repeats import Repeats, repeats
 from compare.read.assumed import vibrissa_of
 from compare.read.case import load_job
 from compare.read.job import AnyJob, Job
@@ -25,6 +26,7 @@ from compare.read.limits import read_tolerances
 from compare.read.rig import read_measured
 from compare.read.run_folder import read_stored
 from compare.read.space_readings import read_space
+from compare.show.passes import repeats_summary
 from compare.show.side_by_side import (
     SideBySide,
     against_table,
@@ -67,6 +69,22 @@ def measured(file: Path, reference: AnyReadings, rig: RigFiles) -> AnyReadings:
     return rig.read(file, vibrissa_of(reference))
 
 
+def mean_of(files: Sequence[Path], reference: AnyReadings, rig: RigFiles) -> Repeats:
+    """Passes that went as the reference did, with their mean."""
+    if isinstance(reference, SpatialReadings):
+        raise InputError("CANDIDATE", "passes", "one file in space", "compare one by one")
+    passes = [rig.read(file, vibrissa_of(reference)) for file in files]
+    ways = {one.provenance["direction"] for one in passes}
+    if len(ways) > 1 and rig.direction is None:
+        raise InputError(
+            "passes", "to the left and to the right", "to one side", "--direction left"
+        )
+    chosen = [one for one in passes if rig.direction in (None, one.provenance["direction"])]
+    if len(chosen) < 2:
+        raise InputError("passes to the side", len(chosen), "2 or more", "choose the other side")
+    return repeats(chosen)
+
+
 def compared(
     reference: AnyReadings,
     candidate: AnyReadings,
@@ -104,13 +122,17 @@ def validated(
     return found
 
 
-def keep_comparison(found: AnyComparison, out: Path, body: Body | None) -> int:
+def keep_comparison(
+    found: AnyComparison, out: Path, body: Body | None, passes: Repeats | None
+) -> int:
     """Write the report and print it; the exit code."""
     with output_folder(out) as folder:
         written = reported(found, folder, body=body)
     for readings in (found.reference, found.candidate):
         if isinstance(readings, Readings):
             note_rows(readings)
+    if passes is not None:
+        terminal.show(*repeats_summary(passes))
     if isinstance(found.candidate, SpatialReadings):
         complaint = wrench_complaint(reconstruct_space(found.candidate))
         if complaint is not None:

@@ -73,3 +73,28 @@ def no_rigs(files: Iterable[Path]) -> bool:
     from analytic.problem.readings_file import is_ours
 
     return all(is_ours(file) for file in files)
+
+
+def pass_files(files: Iterable[Path]) -> list[Path]:
+    """The files of readings; of a folder that ``rig`` wrote those of its passes."""
+    found = []
+    for file in files:
+        if not file.is_dir():
+            found.append(file)
+            continue
+        if not (file / "passes.json").is_file():
+            remedy = "make one: vibrissa rig FILE... --rig RIG.toml --out DIR"
+            raise InputError("FILE", file, "a file, or a folder that `rig` wrote", remedy)
+        from compare.read.run_folder import PassesRecord, read_stored
+
+        record = read_stored(file / "passes.json", PassesRecord)
+        found += [file / f"{one['name']}.parquet" for one in record.passes]
+    require_readings(found)
+    return found
+
+
+def are_passes(files: Iterable[Path]) -> bool:
+    """Whether ``rig`` wrote all of these files of readings."""
+    from analytic import Readings
+
+    return no_rigs(files) and all("pass" in Readings.read(file).provenance for file in files)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
+from compare.commands.kinds import A_RIG, For, no_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -36,7 +36,10 @@ def reconstruct(
     context: typer.Context,
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Readings; or a case, for how well methods do."),
+        typer.Argument(
+            metavar="FILE...",
+            help="Readings, or a folder that `rig` wrote; or a case, for how well methods do.",
+        ),
     ],
     out: Annotated[Path | None, out_folder("results/FILE-reconstructed, or CASE-methods")] = None,
     beam: Annotated[BeamFile, For((SWEEP, SPACE))] = None,
@@ -97,19 +100,35 @@ def reconstruct(
 
     Of a case, and with --errors, how well every method finds contacts that are known. In space
     --beam takes a case file, too: its vibrissa, its clamp, and the true body to compare with.
+    Passes in the plane, several files or a folder that `rig` wrote, are of one object.
     """
     known = None if beam is None else _in_space(beam)
-    several = distinct_names([Path(file) for file in files])
+    given = [Path(file) for file in files]
+    stored = [path for path in given if path.suffix.lower() in TABLES or path.is_dir()]
+    found = pass_files(stored)
+    swept = [] if errors else [one for one in found if _kind(one, known) == SWEEP]
+    cases = [path for path in given if path not in stored]
+    rest = [path for path in (*found, *cases) if path not in swept]
+    if swept:
+        rigs = [] if no_rigs(swept) and not column else [A_RIG]
+        require_use(context, SWEEP, _STORED, *rigs)
+        share = None if noise is None else shares("--noise", noise, 1)[0]
+        with waiting("loading"):
+            from compare.commands import reconstructing
+        rig = reconstructing.RigFiles(column or (), beam, direction, frame)
+        passes = [reconstructing.without_faults(rig.read(path), offset) for path in swept]
+        place = out / "passes" if out and rest else out
+        place = place or Path("results") / f"{distinct_name(given[0])}-reconstructed"
+        reconstructing.in_the_plane(passes, place, share, friction, words(method or "elastica"))
+    several = distinct_names(rest) if rest else {}
     code = AGREES
     for name, path in several.items():
         is_file = path.suffix.lower() in TABLES
-        if is_file:
-            require_readings([path])
         job = None if is_file else load_job(str(path))
         kind = ERRORS if errors or not is_file else _kind(path, known)
-        rigs = is_file and (bool(column) or not no_rigs([path]))
-        require_use(context, kind, _STORED if is_file else _CASE, *([A_RIG] if rigs else []))
-        place = out if out is None or len(several) == 1 else out / name
+        raw = is_file and (bool(column) or not no_rigs([path]))
+        require_use(context, kind, _STORED if is_file else _CASE, *([A_RIG] if raw else []))
+        place = out if out is None or len(several) + bool(swept) == 1 else out / name
         levels = shares("--noise", noise or _LEVELS, 3) if kind == ERRORS else []
         share = shares("--noise", noise or "0", 1)[0] if kind != ERRORS else 0.0
         with waiting("loading"):
@@ -120,14 +139,8 @@ def reconstruct(
             continue
         rig = reconstructing.RigFiles(column or (), beam, direction, frame)
         folder = place or Path("results") / f"{distinct_name(path)}-reconstructed"
-        if kind == SPACE:
-            if not reconstructing.in_space(path, known, rig, folder, share):
-                code = DISAGREES
-        else:
-            level = None if noise is None else share
-            readings = reconstructing.without_faults(rig.read(path), offset)
-            methods = words(method or "elastica")
-            reconstructing.in_the_plane(readings, folder, level, friction, methods)
+        if not reconstructing.in_space(path, known, rig, folder, share):
+            code = DISAGREES
     return code
 
 

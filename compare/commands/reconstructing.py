@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from analytic import (
     CLAMP_READINGS,
@@ -15,7 +16,8 @@ from analytic import (
     relative_noise,
     require_beam,
 )
-from analytic.from_clamp.reconstruct import doubt
+from analytic.from_clamp.passes import as_passes
+from analytic.from_clamp.reconstruct import doubt, scatter_of_contacts
 from analytic.problem.support import check_support
 from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
@@ -29,6 +31,7 @@ from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
+from compare.show.numbers import quantity
 
 
 def in_space(file: Path, known: SpaceJob | None, rig: RigFiles, place: Path, noise: float) -> bool:
@@ -54,38 +57,54 @@ def without_faults(readings: Readings, offset: float) -> Readings:
 
 
 def in_the_plane(
-    readings: Readings,
+    passes: list[Readings],
     place: Path,
     noise: float | None,
     friction: str | None,
     methods: list[str],
 ) -> None:
-    """Find the contour by each method, and write and print it."""
-    if not readings.trusted.any():
-        raise InputError(
-            readings.source,
-            f"{len(readings.table)} stations",
-            "with a finite force_x, force_y and moment_z, and status ok, at some",
-            "see which column lacks its numbers",
-        )
-    level = None if noise is None else relative_noise(readings, noise)
+    """Find the contour by each method, from all passes, and write and print it."""
+    for one in as_passes(passes):
+        if not one.trusted.any():
+            raise InputError(
+                one.source,
+                f"{len(one.table)} stations",
+                "with a finite force_x, force_y and moment_z, and status ok, at some",
+                "see which column lacks its numbers",
+            )
+    level = None if noise is None else relative_noise(passes, noise)
     if friction is not None:
-        readings = _rubbing(readings, friction, level)
-    contacts = {name: reconstruct(readings, level, method=name) for name in methods}
-    if "elastica" in contacts:
-        require_beam(contacts["elastica"], readings)
+        passes = [_rubbing(one, friction, level) for one in passes]
+    contacts = {name: [reconstruct(one, level, method=name) for one in passes] for name in methods}
+    for found, one in zip(contacts.get("elastica", ()), passes, strict=False):
+        require_beam(found, one)
     with output_folder(place) as folder:
-        note_rows(readings)
-        for name, found in contacts.items():
+        for one in passes:
+            note_rows(one)
+        for name, each in contacts.items():
             end = "" if name == "elastica" else f"-{name}"
-            print_reconstruction(readings, found, name)
-            if name == "elastica" and (why := doubt(found, readings)) is not None:
-                terminal.print_line(why)
-            points = found.assign(foot_x=readings.values("foot_x"))
-            terminal.keep(folder / f"points{end}.csv", points)
+            for one, found in zip(passes, each, strict=True):
+                print_reconstruction(one, found, name)
+                if name == "elastica" and (why := doubt(found, one)) is not None:
+                    terminal.print_line(why)
+            if len(passes) > 1 and (apart := scatter_of_contacts(passes, each)) is not None:
+                terminal.print_line(
+                    f"{len(passes)} passes: at one foot position their contact points scatter by "
+                    f"{quantity(apart, 'length', passes[0].beam)} in the median"
+                )
+            points = pd.concat([_points(*one) for one in zip(passes, each, strict=True)])
+            terminal.keep(
+                folder / f"points{end}.csv",
+                points if len(passes) > 1 else points.drop(columns="pass"),
+            )
             with waiting("drawing"):
-                picture = reconstruction(readings, found)
+                picture = reconstruction(passes[0], points)
             terminal.keep(folder / f"reconstruction{end}.png", picture)
+
+
+def _points(readings: Readings, found: pd.DataFrame) -> pd.DataFrame:
+    name = readings.provenance.get("pass", readings.source)
+    return found.assign(foot_x=readings.values("foot_x"), **{"pass": name})
 
 
 def _rubbing(readings: Readings, said: str, noise: Mapping[str, float] | None) -> Readings:

@@ -1,6 +1,5 @@
 """The command ``rig``: a rig's files become sweeps, and what is wrong with them is said."""
 
-from itertools import combinations
 from pathlib import Path
 from typing import Annotated
 
@@ -23,28 +22,21 @@ def rig(
     """Make readings of a rig's files, without their defects.
 
     They are calibrated, zero and drift are taken off, and what is left out is counted. Each pass
-    becomes a file for `compare` and `reconstruct`.
+    becomes a file; `calibrate`, `compare` and `reconstruct` take their folder.
     """
     from compare.commands import terminal
-    from compare.commands.sweep_lines import print_passes
-    from compare.measure.repeats import repeat
-    from compare.read.passes import read_passes, without_gaps
+    from compare.measure.repeats import repeats
+    from compare.read.passes import read_passes, swept_alike
     from compare.read.rig_file import read_rig
     from compare.show.figures.readings import passes_picture
-    from compare.show.passes import passes_document
+    from compare.show.passes import passes_document, passes_summary
 
     passes = read_passes(files, read_rig(rig))
-    repeats = {}
-    for one, other in combinations(passes, 2):
-        if (
-            one.direction == other.direction
-            and one.readings.bends_left == other.readings.bends_left
-        ):
-            repeats[one.name, other.name] = repeat(without_gaps(one), without_gaps(other))
+    found = [repeats([one.readings for one in alike]) for alike in swept_alike(passes)]
     with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
-        print_passes(passes, repeats)
+        terminal.show(*passes_summary(passes, found))
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
-        terminal.keep(folder / "passes.json", passes_document(passes, repeats))
+        terminal.keep(folder / "passes.json", passes_document(passes, found))
         terminal.keep(folder / "passes.png", passes_picture(passes))
     return AGREES

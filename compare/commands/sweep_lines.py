@@ -1,7 +1,4 @@
-"""What one sweep has: its events, doubts, contacts, and its distance from other sweeps of a rig."""
-
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+"""What one sweep has: its events, doubts, contacts."""
 
 import numpy as np
 import pandas as pd
@@ -9,15 +6,10 @@ import pandas as pd
 from analytic import CLAMP_READINGS, PHASES, Readings
 from analytic.space import SpatialReadings
 from compare.commands.output import warn
-from compare.commands.terminal import print_line, show
+from compare.commands.terminal import print_line
 from compare.read.assumed import ASSUMED
 from compare.read.units import OWN_UNITS
-from compare.show.document import Table
 from compare.show.numbers import quantity
-
-if TYPE_CHECKING:
-    from compare.measure.repeats import Repeat
-    from compare.read.passes import Pass
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa touches the object, or would lie in it",
@@ -137,31 +129,3 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -
         words.append(f"{unanswered} to which the method has no answer")
     by = "" if method == "elastica" else f", {method}"
     print_line(f"{readings.source}{by}: {'; '.join(words)}")
-
-
-def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Repeat]") -> None:
-    """Print what was read of each pass, what was not used, and how far passes repeat each other."""
-    rows, drifts = [], []
-    for one in passes:
-        lost = (f"{n} {name.replace('_', ' ')}" for name, n in one.dropped.items() if n)
-        counts = (one.rows, one.kept, one.sorted, one.record.gaps)
-        rows.append((one.name, one.direction, *(str(n) for n in counts), ", ".join(lost)))
-        largest = {n: np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in one.drift}
-        drift = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
-        drifts.append((one.name, *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drift)))
-    counted = ("pass", "to the", "rows", "kept", "sorted", "gaps", "not kept")
-    show(
-        Table("Passes: rows, and why some are not used", counted, rows, words=(0, 1, 6)),
-        Table("Drift of the zero, over the largest reading", ("pass", *CLAMP_READINGS), drifts),
-    )
-    length = passes[0].readings.beam.length
-    for (first, second), found in repeats.items():
-        apart = max(found.rms.values())
-        left = max(found.rms_without_shift.values())
-        shift = (
-            "no shift of the foot to be seen"
-            if found.shift is None
-            else f"foot_x reads {found.shift / length:+.1e} L more "
-            f"(+- {found.shift_uncertainty / length:.0e}), without that {left:.1e} rms"
-        )
-        print_line(f"{second} after {first}: {apart:.1e} rms apart; {shift}")

@@ -1,58 +1,127 @@
-"""How well a rig repeats itself: two passes in the same direction, held against each other."""
+"""How well a rig repeats itself: passes in the same direction, held against their mean."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
+from scipy.interpolate import PchipInterpolator
+from scipy.stats import median_abs_deviation
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
-from compare.measure.measurement import measure
+from analytic.from_clamp.correlated import estimate
+from analytic.from_clamp.passes import Consistency, as_passes, consistency
+from analytic.problem.arrays import Floats
+from compare.sense.noise import scales
 
-_STEPS = 4  # median steps of the foot that are averaged; nearer stations differ by noise alone
-_ACROSS = 2  # averages next to the snap-off that do not count
+_STEPS = 4  # median steps of the foot that are averaged
+_FEWEST = 10  # such averages
+_SLOPES = [f"{name}_slope" for name in CLAMP_READINGS]
+_ZERO = 1e-3  # of a reading's largest magnitude: what its zero, and the slope of it, are known to
+_TOUCHING = 0.02  # of a reading's largest magnitude
+_NEXT_TO_SNAP_OFF = 0.03  # of the loaded travel, where readings grow without bound
+_UNLIKE = 8.0  # times the median scatter, and ...
+_STEEP = 0.03  # ... of the largest magnitude: passes of which some have let go
 
 
 @dataclass(frozen=True)
-class Repeat:
-    """What two passes of one vibrissa past one object differ by."""
+class Repeats:
+    """How far passes are from their mean."""
 
-    # By clamp reading, relative to its largest magnitude: drift that is left, hysteresis, and half
-    # of the noise, as four stations are averaged.
-    rms: dict[str, float]
-    # By how much the second pass's foot positions exceed the first one's for equal readings, as by
-    # play or creep [length]; None if the readings do not show it.
-    shift: float | None
-    shift_uncertainty: float  # half the width of a 95 % interval about it [length]
-    rms_without_shift: dict[str, float]  # as `rms`, with the shift taken off
-    stations: int  # how many averages there are
-
-
-def repeat(first: Readings, second: Readings, window: float = 5e-3) -> Repeat:
-    """Hold a pass against an earlier one in the same direction."""
-    width = _STEPS * max(float(np.median(np.abs(np.diff(x)))) for x in map(_foot, (first, second)))
-    first, second = _averaged(first, width), _averaged(second, width)
-    # An average that lies across the snap-off is of two states.
-    window = max(window, _ACROSS * width / float(np.ptp(_foot(first))))
-    plain = measure(first, second, window)
-    rms = {name: plain.disagreement[name].rms for name in CLAMP_READINGS}
-    stations = plain.disagreement[CLAMP_READINGS[0]].stations
-    try:
-        shifted = measure(first, second, window, "auto")
-    except InputError:
-        return Repeat(rms, None, 0.0, rms, stations)
-    without = {name: shifted.disagreement[name].rms for name in CLAMP_READINGS}
-    offset = shifted.offset
-    return Repeat(rms, offset.value, offset.uncertainty, without, stations)
+    names: tuple[str, ...]  # of the passes
+    mean: Readings  # of all passes, over stretches of the foot's travel in which all have rows
+    # Shape (passes, 3); root mean squares over the largest magnitudes: drift that is left,
+    # hysteresis, and half of the noise, as four stations are averaged. As they are, and without
+    # what a displaced foot makes of them.
+    rms: Floats
+    rms_without_shift: Floats
+    # By how much foot_x of a pass is larger than that of the mean for equal readings, as by play or
+    # creep [length]; what is left of zero and drift, and noise that remembers, count.
+    shifts: Consistency
+    uncertainty: Floats  # shape (passes,); standard deviations of the shifts [length]
 
 
-def _foot(readings: Readings) -> np.ndarray:
-    return readings.values("foot_x")
+def repeats(passes: Sequence[Readings]) -> Repeats:
+    """Hold passes in one direction, two or more, against their mean."""
+    passes = as_passes(passes)
+    tables = [one.table.loc[one.trusted, list(SENSED)] for one in passes]
+    stretches = _stretches([table["foot_x"].to_numpy() for table in tables])
+    binned = _means(tables, stretches)
+    mean = binned.mean(axis=0)
+    scatter = binned.std(axis=0, ddof=1)[:, 1:]
+    largest = np.abs(mean[:, 1:]).max(axis=0)
+    kept = np.all(scatter <= _UNLIKE * np.median(scatter, axis=0) + _STEEP * largest, axis=1)
+    mean = mean[kept]
+    unlike = scatter[kept] / np.sqrt(len(passes))
+    scattered = np.sqrt(np.mean(unlike**2, axis=0)).tolist()
+    provenance = {
+        **passes[0].provenance,
+        "passes": len(passes),
+        "scatter": dict(zip(CLAMP_READINGS, scattered, strict=True)),  # of the mean
+    }
+    of_all = Readings(
+        pd.DataFrame(mean, columns=list(SENSED)),
+        passes[0].beam,
+        f"measured, mean of {len(passes)} passes",
+        {name: x for name, x in provenance.items() if name not in ("pass", "dropped", "rows")},
+    )
+    # What the passes are away from the mean is averaged, not they: it is nearly straight.
+    order = np.argsort(mean[:, 0])
+    curve = PchipInterpolator(mean[order, 0], mean[order, 1:])
+    for table in tables:
+        foot = table["foot_x"].to_numpy()
+        table[list(CLAMP_READINGS)] -= curve(foot)
+        table[_SLOPES] = curve(foot, 1)
+    scale = np.array([*scales(of_all).values()])
+    touching = np.all(np.abs(mean[:, [2, 3]]) > _TOUCHING * scale[1:], axis=1)
+    first, last = mean[touching, 0][[0, -1]]
+    touching &= np.abs(mean[:, 0] - last) > _NEXT_TO_SNAP_OFF * abs(last - first)
+    _, away, slopes = np.split(_means(tables, stretches)[:, kept][:, touching], [1, 4], axis=2)
+    stations, count = away.shape[1], len(passes)
+    seen = [median_abs_deviation(np.diff(x, axis=0), axis=0) for x in away / scale]
+    known = max(1e-12, float(np.median(seen)))
+    unit, along = scale * known, np.linspace(-1, 1, stations)[:, None, None]
+    zero = np.broadcast_to(np.eye(3), (stations, 3, 3))
+    found = estimate(
+        (away / unit).reshape(-1, 3),
+        (-slopes / unit).reshape(-1, 3, 1),
+        np.tile(np.concatenate([zero, along * zero], axis=2), (count, 1, 1)),
+        np.full(6, _ZERO / known),
+        rows=[stations] * count,
+    )
+    shifts = consistency(found.by_pass)
+    return Repeats(
+        tuple(str(one.provenance.get("pass", one.source)) for one in passes),
+        of_all,
+        _rms(away / scale),
+        _rms((away + shifts.numbers[:, :, None] * slopes) / scale),
+        shifts,
+        np.sqrt([covariance[0, 0] for _, covariance in found.by_pass]),
+    )
 
 
-def _averaged(readings: Readings, width: float) -> Readings:
-    """The means over stretches of the foot's travel: unevenly spaced noise has no spline."""
-    if not width > 0:
-        return readings
-    foot_x = _foot(readings)
-    number = np.floor(np.abs(foot_x - foot_x[0]) / width)
-    table = readings.table[list(SENSED)].groupby(number).mean().reset_index(drop=True)
-    return replace(readings, table=table)
+def _stretches(foot: Sequence[Floats]) -> list[Floats]:
+    """Which stretch of the travel each row of each pass is in."""
+    width = _STEPS * max(float(np.median(np.abs(np.diff(x)))) for x in foot)
+    start = foot[0][0]
+    return [np.floor((x - start) / width) for x in foot]
+
+
+def _means(tables: Sequence[pd.DataFrame], stretches: Sequence[Floats]) -> Floats:
+    """Over stretches of the travel in which all passes have rows: (passes, stretches, columns)."""
+    means = [table.groupby(x).mean() for table, x in zip(tables, stretches, strict=True)]
+    shared = sorted(set.intersection(*(set(one.index) for one in means)))
+    if len(shared) < _FEWEST:
+        raise InputError(
+            "passes",
+            f"{len(shared)} stretches of the foot's travel in which all have rows",
+            f"{_FEWEST} or more",
+            "take passes over the same travel together",
+        )
+    if tables[0]["foot_x"].iloc[0] > tables[0]["foot_x"].iloc[-1]:
+        shared = shared[::-1]
+    return np.stack([one.loc[shared].to_numpy() for one in means])
+
+
+def _rms(away: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.mean(away**2, axis=1)))

@@ -1,7 +1,7 @@
 """The passes in the files of a rig: calibrated, without defects, their zero taken off."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -178,7 +178,9 @@ def _zero(
     return means[0], drift, means[0][:, None] + drift[:, None] * share
 
 
-def without_gaps(one: Pass) -> Readings:
-    """A pass with the stations alone that have all four numbers."""
-    kept = one.readings.table[one.readings.trusted].reset_index(drop=True)
-    return replace(one.readings, table=kept)
+def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:
+    """The passes, two or more, that went the same way past the same side."""
+    alike: dict[tuple[Direction, bool], list[Pass]] = {}
+    for one in passes:
+        alike.setdefault((one.direction, one.readings.bends_left), []).append(one)
+    return [some for some in alike.values() if len(some) > 1]

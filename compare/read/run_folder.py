@@ -93,6 +93,12 @@ def read_stored_if_there(file: Path, kind: type[_T]) -> _T | None:
     return read_stored(file, kind) if file.exists() else None
 
 
+class PassesRecord(BaseModel):
+    """What is looked at of a ``passes.json``."""
+
+    passes: list[dict[str, Any]]
+
+
 class _Judged(BaseModel):
     """What is looked at of a ``comparison.json``."""
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from analytic import CLAMP_READINGS, Calibration
 from compare.show.document import Block, Table, Text
+from compare.show.passes import consistency_line
 
 _UNITS = {
     "flexural_rigidity": "N m^2",
@@ -23,9 +24,19 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     for name, found in calibration.found.items():
         unit = _UNITS.get(name, "") if calibration.case.beam.si else ""
         numbers = (_number(x) for x in (found.value, found.lowest, found.highest))
-        rows.append((name, *numbers, unit))
-    head = ("found", "value", "95 % from", "to", "")
-    yield Table(f"From {calibration.stations} stations", head, rows, words=(0, 4))
+        scatter = [_number(calibration.scatter[name])] if name in calibration.scatter else []
+        rows.append((name, *numbers, unit, *scatter))
+    passes = calibration.passes
+    several = () if passes is None else ("passes scatter by",)
+    head = ("found", "value", "95 % from", "to", "", *several)
+    of = "" if passes is None else f" of {len(passes.numbers)} passes"
+    yield Table(f"From {calibration.stations} stations{of}", head, rows, words=(0, 4))
+    if passes is not None:
+        yield Text(consistency_line(passes))
+        if not passes.consistent:
+            yield Text(
+                "what the passes scatter by says more than the intervals, which are of noise"
+            )
     names = [*calibration.found]
     pairs = [(i, j) for j in range(len(names)) for i in range(j)]
     if pairs:
@@ -38,7 +49,7 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     if calibration.jitter:
         unit = " m" if calibration.case.beam.si else ""
         yield Text(f"the foot jitters by {calibration.jitter:.2g}{unit}; the intervals know it")
-    if not calibration.explains:
+    if calibration.misfit_shows:
         yield Text(
             "something else is not as the case says: the intervals hold for noise, not for that"
         )
@@ -57,6 +68,14 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
         ),
         "hum_stations": calibration.noise.hum or None,
         "jitter": calibration.jitter,
+        "passes": None
+        if calibration.passes is None
+        else {
+            "scatter": calibration.scatter,
+            "chi_square": calibration.passes.chi_square,
+            "degrees": calibration.passes.degrees,
+            "probability": calibration.passes.probability,
+        },
     }
 
 

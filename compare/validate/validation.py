@@ -284,6 +284,8 @@ def _noise(
     """Standard deviation of the noise of the data, over each reading's largest magnitude."""
     sizes = dict(zip(CLAMP_READINGS, scale.tolist(), strict=True))
     known = {n: ("estimated from the data", x / sizes[n]) for n, x in reading_noise(data).items()}
+    if (scatter := data.provenance.get("scatter")) is not None:
+        known |= {n: ("the scatter between passes", x / sizes[n]) for n, x in scatter.items()}
     if asked is not None:
         known |= {n: ("of the comparison", x) for n, x in asked.level.items() if x > 0}
     known |= {n: ("stated", x / sizes[n]) for n, x in stated.noise.items()}

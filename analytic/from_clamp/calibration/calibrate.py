@@ -8,12 +8,18 @@ import numpy as np
 
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
-from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.calibration.unknowns import (
+    UNKNOWNS,
+    Sought,
+    Unknown,
+    checked_unknowns,
+)
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
+from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
-from analytic.problem.clamp_path import Direction, Sweep
+from analytic.problem.clamp_path import Sweep
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
@@ -30,6 +36,7 @@ _NOISE_KNOWN_TO = 1.1  # times what is stated
 _CHANCE = 3.0  # standard deviations of a misfit, which is 1 +- 1/sqrt(2 n)
 _SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
 _STARTS = 3
+_ENOUGH = 4000  # stations of which a fit is sought
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
 _ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
@@ -56,7 +63,7 @@ class Estimate:
 
 @dataclass(frozen=True, repr=False)
 class Calibration(Shown):
-    """What a sweep past a known object says of the vibrissa.
+    """What sweeps past a known object say of the vibrissa.
 
     Parameters
     ----------
@@ -78,6 +85,11 @@ class Calibration(Shown):
         What of the noise remembers: correlation, memory and hum, of force_x, force_y, moment_z.
     jitter : float
         Standard deviation of the foot's place, if the readings show any [length].
+    passes : Consistency or None
+        Of several passes: what each alone says, of the clamp's compliance in place of its
+        stiffness and over the case's units, and whether these differ by noise alone.
+    scatter : dict
+        Standard deviation of what each pass alone says, by unknown; empty for one pass.
     """
 
     found: dict[str, Estimate]
@@ -88,12 +100,19 @@ class Calibration(Shown):
     misfit: float
     noise: NoiseFound
     jitter: float
+    passes: Consistency | None
+    scatter: dict[str, float]
+
+    @property
+    def misfit_shows(self) -> bool:
+        """Whether the fit leaves more than chance and the noise, known to a tenth, do."""
+        freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
+        return bool(self.misfit > _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
 
     @property
     def explains(self) -> bool:
-        """Whether the fit leaves no more than chance and the noise, known to a tenth, do."""
-        freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
-        return bool(self.misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
+        """Whether noise alone explains what the fit leaves, and what passes differ by."""
+        return not self.misfit_shows and (self.passes is None or self.passes.consistent)
 
     def _tiles(self) -> dict[str, object]:
         return {
@@ -116,23 +135,25 @@ class Calibration(Shown):
 
 
 def calibrate(
-    readings: Readings,
+    readings: Readings | Sequence[Readings],
     case: Case,
     unknowns: Sequence[str] = ("flexural_rigidity",),
     noise: Mapping[str, float] | None = None,
 ) -> Calibration:
-    """Numbers of a vibrissa, its clamp or its friction, from a sweep past a known object.
+    """Numbers of a vibrissa, its clamp or its friction, from sweeps past a known object.
 
     The closed form's readings are fitted to the measured ones by least squares, each weighed by its
     noise, over the stations under load; not next to the snap-off, where readings grow without
     bound. The intervals are those of the linearised fit, for noise that may remember
     (`analytic.from_clamp.correlated`), with the zero of each reading known to 0.1 % of its largest
-    magnitude and the foot's jitter, if it shows.
+    magnitude and the foot's jitter, if it shows. Of several passes each has a zero of its own, and
+    a slope of it over the pass, known as well.
 
     Parameters
     ----------
-    readings : Readings
+    readings : Readings, or a sequence of them
         The four sensed columns are used, in the case's units, and ``status`` to leave stations out.
+        Several are passes of one rig, in either direction; their values are pooled.
     case : Case
         The object and all that is known of the vibrissa. What is unknown is first tried as it is
         there. Its stations do not matter.
@@ -153,27 +174,23 @@ def calibrate(
     ------
     InputError
         If an unknown is none, or none of the case's numbers, the noise is no such mapping, too few
-        stations are under load, the readings do not distinguish the unknowns, or are of no such
-        vibrissa.
+        stations are under load, the readings do not distinguish the unknowns, are of no such
+        vibrissa, or of different ones.
     """
-    require("readings", readings, Readings, "as Readings(table, beam)")
+    passes = as_passes(readings)
     require("case", case, Case, "named_case('catenary') makes one")
-    for given in (readings, case):
-        given.require_sweep("a calibration")
+    case.require_sweep("a calibration")
+    for one in passes:
+        one.require_sweep("a calibration")
     names = checked_unknowns(unknowns, case)
-    check_size(readings, case)
-    measured = measured_under_load(readings, noise, len(names))
-    direction: Direction = "right" if measured.foot_x[-1] > measured.foot_x[0] else "left"
+    for one in passes:
+        check_size(one, case)
+    measured = Measured.together([measured_under_load(one, noise, len(names)) for one in passes])
+    direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
-    fit, numbers, cost = _fitted(measured, case, names)
-    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(names))))
-    jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
-    if jittered is not None:
-        fit = LeastSquaresFit(jittered, case, names)
-        numbers, cost = fit.best_from(numbers)
-    least = 0.0 if noise is None or jittered else 1.0
-    numbers, known = _knowing_the_noise(fit, numbers, least)
+    kinds = [UNKNOWNS[name] for name in names]
+    fit, numbers, misfit, known = fitted_to_noise(measured, case, kinds, noise is not None)
     covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
@@ -181,11 +198,17 @@ def calibrate(
         if not _DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
             raise _not_distinguished(names, covariance, i)
     sought = fit.sought(numbers)
+    alike = consistency(known.by_pass) if len(passes) > 1 else None
+
+    def intervals(halves: Floats) -> dict[str, Estimate]:
+        return {
+            name: _interval(fit, numbers, i, float(half))
+            for i, (name, half) in enumerate(zip(names, halves, strict=True))
+        }
+
+    scattered = {} if alike is None else intervals(alike.scatter)
     return Calibration(
-        {
-            name: _interval(fit, numbers, i, _DOUBLE_SIDED_95 * float(deviations[i]))
-            for i, name in enumerate(names)
-        },
+        intervals(_DOUBLE_SIDED_95 * deviations),
         sought.case,
         sought.offset,
         covariance / np.outer(deviations, deviations),
@@ -193,16 +216,36 @@ def calibrate(
         misfit,
         known.noise,
         float(fit.measured.spread[0]),
+        alike,
+        {name: (one.highest - one.lowest) / 2 for name, one in scattered.items()},
     )
 
 
+def fitted_to_noise(
+    measured: Measured, case: Case, kinds: Sequence[Unknown], stated: bool
+) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
+    """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
+    fit, numbers, cost = _fitted(measured, case, kinds)
+    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(kinds))))
+    jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
+    if jittered is not None:
+        fit = LeastSquaresFit(jittered, case, kinds)
+        numbers, cost = fit.best_from(numbers)
+    numbers, known = _knowing_the_noise(fit, numbers, 1.0 if stated and not jittered else 0.0)
+    return fit, numbers, misfit, known
+
+
 def _fitted(
-    measured: Measured, case: Case, names: tuple[str, ...]
+    measured: Measured, case: Case, kinds: Sequence[Unknown]
 ) -> tuple[LeastSquaresFit, Floats, float]:
     """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
     every = len(measured.foot_x)
-    fit = LeastSquaresFit(measured, case, names)
-    numbers, cost = _best(fit)
+    fit = LeastSquaresFit(measured, case, kinds)
+    thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long
+    coarse = fit if thinned.all() else LeastSquaresFit(measured.at(thinned), case, kinds)
+    numbers, cost = _best(coarse)
+    if coarse is not fit:
+        numbers, cost = fit.best_from(numbers)
     for _ in range(_ROUNDS):
         expected = fit.expected(numbers)
         there = np.asarray(np.isfinite(expected).all(axis=0))
@@ -215,7 +258,7 @@ def _fitted(
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
-        fit = LeastSquaresFit(fit.measured.at(there), case, names)
+        fit = LeastSquaresFit(fit.measured.at(there), case, kinds)
         numbers, cost = fit.best_from(_inside(fit, numbers))
     return fit, numbers, cost
 
@@ -252,9 +295,9 @@ def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
     if foot > 0:
         return None
     expected = fit.expected(numbers)
-    slopes = np.gradient(expected, axis=1) / np.gradient(measured.foot_x)
     over = np.array(sizes)
-    jitter, own = foot_jitter((expected - measured.readings).T / over, slopes.T / over)
+    left, slopes = expected - measured.readings, measured.slopes(expected)
+    jitter, own = foot_jitter(left.T / over, slopes.T / over, measured.rows)
     return replace(measured, spread=np.array([jitter, *(own * over)])) if jitter else None
 
 
@@ -262,18 +305,27 @@ def _knowing_the_noise(
     fit: LeastSquaresFit, numbers: Floats, least: float
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
-    zero: Floats = _ZERO * np.abs(fit.measured.readings).max(axis=1)
+    measured = fit.measured
+    zero: Floats = _ZERO * np.abs(measured.readings).max(axis=1)
+    nuisances = fit.whitening
+    if len(measured.rows) > 1:
+        along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
+        nuisances = np.concatenate([nuisances, along[:, None, None] * nuisances], axis=2)
+    uncertain = np.tile(zero, nuisances.shape[2] // len(zero))
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
-        for name, column in zip(fit.names, jacobian.T, strict=True):
+        for kind, column in zip(fit.kinds, jacobian.T, strict=True):
             if not column.any():
                 allowed = "something that the readings depend on"
-                raise InputError("unknowns", name, allowed, "leave it out")
+                raise InputError(
+                    "unknowns", kind.said or kind.name or "offset", allowed, "leave it out"
+                )
         by_number = jacobian.reshape(-1, len(zero), len(numbers))
         left = -fit.misses(numbers).reshape(-1, len(zero))
-        found = estimate(left, by_number, fit.whitening, zero, least)
+        found = estimate(left, by_number, nuisances, uncertain, least, rows=measured.rows)
+        by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         numbers = _inside(fit, numbers + found.numbers)
-    return numbers, found
+    return numbers, replace(found, by_pass=by_pass)
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -1,13 +1,18 @@
 """Least squares: the numbers with which the closed form comes nearest to a sweep's readings."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import get_args
+
 import numpy as np
 from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought
+from analytic.from_clamp.calibration.unknowns import Sought, Unknown
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.errors import InputError
 
 _STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matter
@@ -23,14 +28,22 @@ class LeastSquaresFit:
     foot position; both enter the station's covariance.
     """
 
-    def __init__(self, measured: Measured, given: Case, names: tuple[str, ...]) -> None:
-        self.measured, self.given, self.names = measured, given, names
-        self.kinds = [UNKNOWNS[name] for name in names]
-        self.lowest = np.array([kind.lowest for kind in self.kinds])
-        self.highest = np.array([kind.highest for kind in self.kinds])
-        self.start = np.array([kind.now(Sought(given), given) for kind in self.kinds])
+    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
+        self.measured, self.given, self.kinds = measured, given, kinds
+        self.lowest = np.array([kind.lowest for kind in kinds])
+        self.highest = np.array([kind.highest for kind in kinds])
+        self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
         self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
-        self._last: tuple[Floats, Expected | None] = np.empty(0), None
+        # All passes to one side are solved as one sweep, whose stations are in order.
+        ways = np.repeat(measured.ways, measured.rows)
+        self._sweeps = {}
+        for way in get_args(Direction):
+            sign = -1 if way == "left" else 1
+            here = np.flatnonzero(ways == way)
+            if here.size:
+                order = np.argsort(sign * measured.foot_x[here], kind="stable")
+                self._sweeps[Sweep(given.sweep.stations, direction=way)] = here[order]
+        self._last: tuple[Floats, list[Expected] | None] = np.empty(0), None
 
     def sought(self, numbers: Floats) -> Sought:
         """The vibrissa with these numbers."""
@@ -42,7 +55,9 @@ class LeastSquaresFit:
     def expected(self, numbers: Floats) -> Floats:
         """The readings that these numbers make one expect."""
         found = self._solved(numbers)
-        return np.full_like(self.measured.readings, np.nan) if found is None else found.readings
+        if found is None:
+            return np.full_like(self.measured.readings, np.nan)
+        return self._in_passes([one.readings for one in found])
 
     def misses(self, numbers: Floats) -> Floats:
         """What they differ from the measured ones by, over the noise."""
@@ -54,25 +69,26 @@ class LeastSquaresFit:
         columns = np.zeros((self.measured.readings.size, len(numbers)))
         if found is None:
             return columns
-        here = self._missed(found.readings)
+        here = self.misses(numbers)
         for i, number in enumerate(numbers.tolist()):
             step = _STEP if number + _STEP <= self.highest[i] else -_STEP
             moved = numbers.copy()
             moved[i] = number + step
-            sought = self.sought(moved)
-            beside = found.beside(sought.case, self.measured.foot_x - sought.offset)
-            columns[:, i] = (self._missed(beside) - here) / step
+            cases = self._cases(moved)
+            beside = [one.beside(*case) for one, case in zip(found, cases, strict=True)]
+            columns[:, i] = (self._missed(self._in_passes(beside)) - here) / step
         return columns
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
         """The same with the rigidity that fits best if nothing else depended on it."""
-        if "flexural_rigidity" not in self.names:
+        named = [kind.name for kind in self.kinds]
+        if "flexural_rigidity" not in named:
             return numbers
         zero = np.einsum("nij,jn->ni", self.whitening, -self.measured.readings).ravel()
         model = self.misses(numbers) - zero
         if not model.any():
             return numbers
-        i = self.names.index("flexural_rigidity")
+        i = named.index("flexural_rigidity")
         factor = float(-(model @ zero) / (model @ model))
         scaled = numbers.copy()
         scaled[i] = np.clip(numbers[i] * factor, 2 * self.lowest[i], self.highest[i] / 2)
@@ -95,8 +111,8 @@ class LeastSquaresFit:
         numbers = np.where(found.x - self.lowest < _AN_END, self.lowest, found.x)
         return numbers, 2 * float(found.cost)
 
-    def _solved(self, numbers: Floats) -> Expected | None:
-        """The sweep of the vibrissa with these numbers; None if there is no such sweep."""
+    def _solved(self, numbers: Floats) -> list[Expected] | None:
+        """The sweeps of the vibrissa with these numbers; None if there is no such sweep."""
         before, found = self._last  # derivatives are asked for where the misses were
         if not np.array_equal(before, numbers):
             try:
@@ -106,29 +122,47 @@ class LeastSquaresFit:
             self._last = numbers.copy(), found
         return found
 
-    def _swept(self, numbers: Floats, before: Floats, known: Expected | None) -> Expected:
-        """The sweep, or the one before if that differs by the rigidity of the vibrissa alone."""
-        sought, other = self.sought(numbers), np.array(self.names) != "flexural_rigidity"
-        rigid = np.isinf(sought.case.clamp_stiffness)
+    def _swept(
+        self, numbers: Floats, before: Floats, known: list[Expected] | None
+    ) -> list[Expected]:
+        """The sweeps, or those before if they differ by the rigidity of the vibrissa alone."""
+        cases = self._cases(numbers)
+        other = np.array([kind.name for kind in self.kinds]) != "flexural_rigidity"
+        rigid = np.isinf(self.sought(numbers).case.clamp_stiffness)
         if known is not None and rigid and np.array_equal(numbers[other], before[other]):
-            rigidity = sought.case.beam.base_rigidity
-            return known.scaled(sought.case, rigidity / known.case.beam.base_rigidity)
-        return expected_readings(sought.case, self.measured.foot_x - sought.offset)
+            factor = cases[0][0].beam.base_rigidity / known[0].case.beam.base_rigidity
+            return [one.scaled(case, factor) for one, (case, _) in zip(known, cases, strict=True)]
+        return [expected_readings(*case) for case in cases]
+
+    def _cases(self, numbers: Floats) -> list[tuple[Case, Floats]]:
+        """The cases of the sweeps to either side, and the foot positions of their stations."""
+        sought = self.sought(numbers)
+        foot_x = self.measured.foot_x - sought.offset
+        return [
+            (replace(sought.case, sweep=sweep), foot_x[here])
+            for sweep, here in self._sweeps.items()
+        ]
+
+    def _in_passes(self, sweeps: Sequence[Floats]) -> Floats:
+        """Readings of the sweeps to either side, pass by pass."""
+        found = np.empty_like(self.measured.readings)
+        for here, readings in zip(self._sweeps.values(), sweeps, strict=True):
+            found[:, here] = readings
+        return found
 
     def _missed(self, found: Floats) -> Floats:
-        known = np.asarray(np.isfinite(found).all(axis=0))
-        order = np.arange(len(known))
-        if known.any():
-            found = np.stack([np.interp(order, order[known], row[known]) for row in found])
-        else:
-            found = np.zeros_like(found)
-        missed = found - self.measured.readings
+        filled = np.zeros_like(found)
+        for here in self._sweeps.values():
+            readings, order = found[:, here], np.arange(len(here))
+            known = np.isfinite(readings).all(axis=0)
+            if known.any():
+                filled[:, here] = [np.interp(order, order[known], row[known]) for row in readings]
+        missed = filled - self.measured.readings
         return np.asarray(np.einsum("nij,jn->ni", self.whitening, missed).ravel())
 
     def _root(self, readings: Floats) -> Floats:
         """Root of the covariance of each station's three readings, shape (n, 3, 3)."""
         foot, *sizes = self.measured.spread
-        slopes = np.gradient(readings, axis=1) / np.gradient(self.measured.foot_x)
-        moved = foot * slopes.T
+        moved = foot * self.measured.slopes(readings).T
         covariance = np.diag(np.square(sizes)) + moved[:, :, None] * moved[:, None, :]
         return np.linalg.cholesky(covariance)

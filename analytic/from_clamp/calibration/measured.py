@@ -1,6 +1,6 @@
 """The stations of a measured sweep that a calibration is from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Direction
 from analytic.problem.columns import CLAMP_READINGS, SENSED, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
@@ -21,15 +22,49 @@ _DECADES = 6  # by which loads may differ from EI/L^2 and EI/L; else the units d
 
 @dataclass(frozen=True)
 class Measured:
-    """Readings of a sweep, as a fit needs them."""
+    """Readings of one or more passes, as a fit needs them: one pass after the other."""
 
-    foot_x: Floats  # shape (n,); Of the stations that count, in the order of the sweep [length]
+    foot_x: Floats  # shape (n,); Of the stations that count, in the order of each pass [length]
     readings: Floats  # shape (3, n); Force and moment at the clamp
     spread: Floats  # shape (4,); Standard deviation of the foot position and of the three readings
+    rows: tuple[int, ...]  # how many stations each pass has
+
+    @classmethod
+    def together(cls, passes: Sequence["Measured"]) -> "Measured":
+        """All of these passes; of one rig, so that the noise of each is that of all."""
+        return cls(
+            np.concatenate([one.foot_x for one in passes]),
+            np.concatenate([one.readings for one in passes], axis=1),
+            np.sqrt(np.mean([one.spread**2 for one in passes], axis=0)),
+            tuple(n for one in passes for n in one.rows),
+        )
+
+    @property
+    def passes(self) -> list[slice]:
+        """Where each pass is."""
+        ends = np.cumsum(self.rows).tolist()
+        return [slice(end - n, end) for n, end in zip(self.rows, ends, strict=True)]
+
+    @property
+    def ways(self) -> list[Direction]:
+        """To where the foot moves in each pass."""
+        moved = [self.foot_x[one][-1] - self.foot_x[one][0] for one in self.passes]
+        return ["right" if way > 0 else "left" for way in moved]
+
+    def slopes(self, readings: Floats) -> Floats:
+        """Derivatives of some readings over the foot position, within each pass."""
+        return np.concatenate(
+            [
+                np.gradient(readings[:, one], axis=1) / np.gradient(self.foot_x[one])
+                for one in self.passes
+            ],
+            axis=1,
+        )
 
     def at(self, kept: Booleans) -> "Measured":
         """Some of the stations."""
-        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread)
+        rows = tuple(int(kept[one].sum()) for one in self.passes)
+        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread, rows)
 
 
 def check_size(readings: Readings, case: Case) -> None:
@@ -66,7 +101,8 @@ def measured_under_load(
         allowed = f"{fewest} or more, {_PER_UNKNOWN} for each unknown"
         remedy = "sweep further or with more stations, or state less noise"
         raise InputError(name, len(order), allowed, remedy)
-    return Measured(x[order], np.stack([readings.values(n)[order] for n in CLAMP_READINGS]), spread)
+    found = np.stack([readings.values(n)[order] for n in CLAMP_READINGS])
+    return Measured(x[order], found, spread, (len(order),))
 
 
 def _kept(readings: Readings, loaded: Integers) -> Integers:

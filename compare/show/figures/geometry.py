@@ -58,10 +58,13 @@ def geometry(comparison: Comparison) -> Figure:
 
 
 def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
-    """Draw the contact points that the clamp readings show, with their uncertainty if known."""
+    """Draw the contact points that the clamp readings show, with their uncertainty if known.
+
+    Those of other passes may follow; the vibrissa is drawn of the readings alone.
+    """
     figure = Figure(layout="constrained")
     ax = figure.subplots()
-    _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str))
+    _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str)[: len(readings.table)])
     scale = readings.beam.length
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])

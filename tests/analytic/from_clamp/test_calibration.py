@@ -80,7 +80,9 @@ def test_derivatives_are_those_of_whole_sweeps():
     """Though they are taken from the states of one: 1e-4, as a cone's differences are so good."""
     cone = Beam(tip_radius=0.003, natural_curvature=-0.2)
     case = Case(cone, CIRCLE, Sweep(20, direction="right"), clamp_stiffness=8.0, friction=0.2)
-    fit = LeastSquaresFit(measured_under_load(solve_sweep(case), None, 3), case, tuple(UNKNOWNS))
+    fit = LeastSquaresFit(
+        measured_under_load(solve_sweep(case), None, 3), case, [*UNKNOWNS.values()]
+    )
     for column, way in zip(fit.jacobian(fit.start).T, 1e-4 * np.eye(len(UNKNOWNS)), strict=True):
         whole = (fit.misses(fit.start + way) - fit.misses(fit.start - way)) / 2e-4
         np.testing.assert_allclose(column, whole, rtol=0, atol=1e-4 * np.abs(whole).max())
@@ -205,6 +207,46 @@ def test_unknowns_that_trade_off_are_named():
     assert found.lowest < 1 < found.highest < 1.05
 
 
+@pytest.mark.slow
+def test_passes_are_pooled():
+    """Of unequal length, to both sides; a pass of another rigidity is found to differ."""
+    rng = np.random.default_rng(5)
+    ways = [("left", 60), ("right", 90), ("left", 80)]
+    exact = [solve_sweep(replace(SOFT, sweep=Sweep(n, direction=way))) for way, n in ways]
+    noise = relative_noise(exact, 0.01)
+    passes = [noisy(one, noise, rng) for one in exact]
+    unknowns = ["flexural_rigidity", "clamp_stiffness"]
+    pooled = calibrate(passes, SOFT, unknowns, noise)
+    singles = [calibrate(one, SOFT, unknowns, noise) for one in passes]
+    assert pooled.passes is not None and pooled.passes.consistent and pooled.explains
+    for i, name in enumerate(unknowns):
+        one, true = pooled.found[name], {"flexural_rigidity": 1.0, "clamp_stiffness": 8.0}[name]
+        assert one.lowest < true < one.highest
+        widths = [single.found[name].highest - single.found[name].lowest for single in singles]
+        together = 1 / np.sqrt(np.sum(1 / np.square(widths)))
+        assert one.highest - one.lowest == pytest.approx(together, rel=0.25)
+        assert pooled.scatter[name] < np.mean(widths)
+        assert pooled.passes.numbers[:, i].shape == (3,)
+    stiffer = replace(SOFT, beam=Beam(1.0, 1.05))
+    other = replace(noisy(solve_sweep(stiffer), noise, rng), beam=SOFT.beam)
+    apart = calibrate([*passes, other], SOFT, unknowns[:1], noise)
+    assert not apart.passes.consistent and not apart.explains
+    assert apart.passes.farthest == 3
+
+
+@pytest.mark.trial
+def test_passes_that_differ_by_noise_alone_are_called_so():
+    """The chi square of 200 sets of four passes has the mean of its degrees of freedom."""
+    exact, rng = solve_sweep(SOFT), np.random.default_rng(9)
+    noise = relative_noise(exact, 0.01)
+    found = [
+        calibrate([noisy(exact, noise, rng) for _ in range(4)], SOFT, ["flexural_rigidity"], noise)
+        for _ in range(200)
+    ]
+    assert np.mean([one.passes.chi_square for one in found]) == pytest.approx(3, abs=0.6)
+    assert sum(one.passes.consistent for one in found) >= 194
+
+
 READINGS = solve_sweep(SOFT)
 
 
@@ -220,6 +262,8 @@ def changed(**columns) -> Readings:
         (READINGS, SOFT, 5, "unknowns"),
         (READINGS, SOFT, ["friction", "friction"], "friction twice"),
         (3, SOFT, ["friction"], "readings"),
+        ([], SOFT, ["friction"], "readings = none"),
+        ([READINGS, replace(READINGS, beam=Beam(2.0))], SOFT, ["friction"], "different rigs"),
         (READINGS, 3, ["friction"], "case"),
         (READINGS, replace(SOFT, beam=Beam(natural_curvature=lambda s: -s)), ["natural_curvature"],
          "natural_curvature, which varies"),

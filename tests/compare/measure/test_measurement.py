@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import CLAMP_READINGS, Case, Readings, circle, named_case, solve_sweep
+from analytic import CLAMP_READINGS, Case, Readings, Sweep, circle, named_case, solve_sweep
 from analytic.problem.support import Support
 from compare.align.offset import without_offset
 from compare.measure.cantilever import tip_of
 from compare.measure.conditions import as_believed
 from compare.measure.measurement import measure
-from compare.measure.repeats import repeat
+from compare.measure.repeats import repeats
 from compare.sense.noise import with_noise
 from tests.compare.synthetic import BEAM, changed, scaled, solved
 
@@ -127,21 +127,28 @@ def test_what_is_missing_where_a_sweep_is_not_trusted(side):
     assert measure(solved(), changed(solved(), slice(0, 40)), WINDOW).not_trusted() == []
 
 
-def test_a_repeat_differs_by_its_gain_and_its_shift():
-    """Means of four stations each; those closer to the snap-off than two do not count."""
-    second = scaled(solved(), **dict.fromkeys(CLAMP_READINGS, 1.001))
-    found = repeat(solved(), second)
-    means = {n: solved().values(n).reshape(-1, 4).mean(axis=1) for n in ("foot_x", *CLAMP_READINGS)}
-    width = 4 * 5 / 128
-    kept = (means["moment_z"] != 0) & (np.abs(means["foot_x"] - solved().snap_off) >= 2 * width)
-    assert found.stations == kept.sum()
-    for name, rms in found.rms.items():
-        expected = 1e-3 * np.sqrt(np.mean(means[name][kept] ** 2)) / np.abs(means[name]).max()
-        assert rms == pytest.approx(expected, rel=1e-9)
-    shifted = repeat(solved(), without_offset(solved(), -0.02))
-    assert shifted.shift == pytest.approx(0.02, abs=1e-3)
-    assert max(shifted.rms_without_shift.values()) < 0.2 * max(shifted.rms.values())
-    assert repeat(solved(), solved()).rms == dict.fromkeys(CLAMP_READINGS, 0.0)
+@pytest.mark.parametrize("seed", range(3))
+def test_passes_differ_by_their_shift(seed):
+    """A shift of 0.02 is found within its interval, and nothing but noise is left without it."""
+    noise, rng = 1e-3, np.random.default_rng(seed)
+    dense = solve_sweep(Case(BEAM, named_case("parabola").profile.scaled(2.0), Sweep(800)))
+    size = noise * np.array([np.abs(dense.values(n)).max() for n in CLAMP_READINGS])
+    noisy = [
+        replace(dense, table=dense.table[["foot_x", *CLAMP_READINGS]].assign(**{
+            n: dense.values(n) + x * rng.standard_normal(800)
+            for n, x in zip(CLAMP_READINGS, size, strict=True)}))
+        for _ in range(4)
+    ]  # fmt: skip
+    alike = repeats(noisy)
+    assert alike.shifts.consistent
+    assert np.all(alike.rms < noise)
+    found = repeats([*noisy[:3], without_offset(noisy[3], -0.02)])
+    assert not found.shifts.consistent
+    assert found.shifts.farthest == 3
+    shifts = found.shifts.numbers[:, 0]
+    apart = shifts[3] - shifts[:3].mean()
+    assert apart == pytest.approx(0.02, abs=3 * found.uncertainty[3] + 4e-4)  # slopes of the mean
+    assert np.all(found.rms_without_shift < 1.3 * noise)
 
 
 def test_what_a_method_believes():
