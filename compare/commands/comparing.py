@@ -27,13 +27,7 @@ from compare.read.rig import read_measured
 from compare.read.run_folder import read_stored
 from compare.read.space_readings import read_space
 from compare.show.passes import repeats_summary
-from compare.show.side_by_side import (
-    SideBySide,
-    against_table,
-    between_table,
-    picture,
-    side_by_side,
-)
+from compare.show.side_by_side import SideBySide, summary, write_side_by_side
 
 Number: TypeAlias = float | Literal["auto"]
 
@@ -157,16 +151,16 @@ def side_by_side_of(
     exact = job.solve() if isinstance(job, Job) else read(reference)
     known = vibrissa_of(exact)
     named = distinct_names(files)
-    return side_by_side(exact, {name: read(path, known) for name, path in named.items()})
+    case = exact.provenance.get("case") or "Sweeps"
+    return SideBySide.of(exact, {n: read(path, known) for n, path in named.items()}, case=case)
 
 
 def keep_side_by_side(found: SideBySide, out: Path) -> int:
     """Write and print how far all are apart; the exit code."""
     with output_folder(out) as folder:
-        comparisons = [*found.against.values()]
-        for readings in (comparisons[0].reference, *(one.candidate for one in comparisons)):
+        for readings in (found.reference, *(one.candidate for one in found.against.values())):
             note_rows(readings)
-        terminal.show(against_table(found), *between_table(found))
-        terminal.keep(folder / "side-by-side.json", found.to_dict())
-        terminal.keep(folder / "side-by-side.png", picture(found))
-    return AGREES if all(one.agrees for one in comparisons) else DISAGREES
+        terminal.show(*summary(found))
+        for path in write_side_by_side(found, folder, "side-by-side"):
+            terminal.print_written(path)
+    return AGREES if found.agree else DISAGREES

@@ -19,9 +19,9 @@ from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
 from compare.read.runs import EngineOutcome
 from compare.show.document import Film, Text
-from compare.show.engines import ManyEngines, outcomes_table, parts_table, write_engines
 from compare.show.plane_page import plane_summary
 from compare.show.report import write_report
+from compare.show.side_by_side import SideBySide, summary, write_side_by_side
 from compare.show.spatial_page import spatial_summary
 from engines import Outcome, list_engines
 from engines.apart import sweep_apart
@@ -165,15 +165,13 @@ def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_bu
         from compare.commands.budget import budget_at_rest
 
         budget, _ = budget_at_rest(job)
-    many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
-    terminal.show(outcomes_table({many.case.name: many.outcomes}))
-    if many.parts():
-        terminal.show(parts_table({many.case.name: many.parts()}))
-    if many.split is not None:
-        terminal.print_line(many.split.sentence)
-    for path in write_engines(many, folder):
+    found = SideBySide.of(exact, sweeps, _rows(outcomes), budget, job.case.name)
+    terminal.show(*summary(found))
+    if found.split is not None:
+        terminal.print_line(found.split.sentence)
+    for path in write_side_by_side(found, folder, "engines"):
         terminal.print_written(path)
-    return many.agree
+    return found.agree
 
 
 def _swept(job: Job, folder: Path) -> Sequence[Outcome]:

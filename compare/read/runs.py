@@ -104,18 +104,23 @@ class RunRecord(BaseModel):
 
 @dataclass(frozen=True)
 class EngineOutcome:
-    """What one engine came to."""
+    """What one engine, or one file of readings, came to."""
 
     name: str
-    role: str
-    version: str
-    tuned: str  # what was set for it, as it says itself
-    trouble: str | None  # why there are no readings
+    role: str = ""  # of an engine, beside MuJoCo
+    version: str = ""
+    tuned: str = ""  # what was set for it, as it says itself
+    trouble: str | None = None  # why there are no readings
     rms: dict[str, float] | None = None  # from the closed form's readings
     snap_off_apart: float | None = None  # less that of the closed form [L]
     seconds_a_station: float | None = None  # of processor time
     agrees: bool = False
     likely: str = ""  # why it disagrees, or why stations are not to be trusted
+
+    @property
+    def label(self) -> str:
+        """Its name, with version and role if it is an engine's."""
+        return f"{self.name} {self.version}, {self.role}" if self.role else self.name
 
 
 @dataclass(frozen=True)

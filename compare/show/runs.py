@@ -8,8 +8,8 @@ from analytic import CLAMP_READINGS, InputError
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
-from compare.show.engines import outcomes_table, parts_table
 from compare.show.numbers import percent, short
+from compare.show.side_by_side import outcomes_table, parts_table
 
 
 def runs_document(folder: Path) -> Document:

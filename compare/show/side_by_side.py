@@ -1,86 +1,302 @@
-"""Any number of sweeps against one reference: a table, a picture, and the differences in pairs."""
+"""Sweeps of one case side by side, of engines or from files: one page, one table, one picture."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
+from analytic.problem.files import write_whole
 from compare.comparison import Comparison, compare
-from compare.show.document import Table
+from compare.explain.budget import Budget
+from compare.explain.split import Split, split
+from compare.read.runs import EngineOutcome
+from compare.show import style
+from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
 from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot_label, shade_reference
+from compare.show.html import html
 from compare.show.numbers import short
-from compare.show.style import LARGE, LINE_STYLES, SERIES, SYMBOLS, label
+from compare.show.page import as_json, png
+
+_EDGE = 0.97  # of the picture's width
 
 
 @dataclass(frozen=True)
 class SideBySide:
     """Sweeps compared with a reference and with each other."""
 
+    case: str  # what was swept
+    outcomes: Sequence[EngineOutcome]  # in the order in which they were asked for
     against: dict[str, Comparison]  # each sweep against the reference, by its name
     # Each sweep against each one before it, by both names.
     between: dict[tuple[str, str], Comparison]
+    split: Split | None  # implementation and model, if MuJoCo and a twin of it are there
+    budget: Budget | None  # what MuJoCo's disagreement is made of, if it was measured
+
+    @classmethod
+    def of(
+        cls,
+        reference: Readings,
+        sweeps: Mapping[str, Readings],
+        asked: Sequence[EngineOutcome] = (),
+        budget: Budget | None = None,
+        case: str = "Sweeps",
+    ) -> "SideBySide":
+        """Compare sweeps by name; those that were asked for may have given none."""
+        against = {name: compare(reference, one) for name, one in sweeps.items()}
+        between = {
+            (one, other): compare(sweeps[one], sweeps[other])
+            for one, other in combinations(sweeps, 2)
+        }
+        asked = asked or [EngineOutcome(name) for name in sweeps]
+        roles = {one.name: one.role for one in asked}
+        outcomes = [
+            _compared(one, against[one.name]) if one.name in sweeps else one for one in asked
+        ]
+        parts = split(reference, sweeps, roles)
+        return cls(case, outcomes, against, between, parts, budget)
 
     @property
-    def reference(self) -> str:
+    def reference(self) -> Readings:
         """What the sweeps are compared with."""
-        return next(iter(self.against.values())).reference.source
+        return next(iter(self.against.values())).reference
+
+    @property
+    def agree(self) -> bool:
+        """Whether all gave readings that agree with the reference."""
+        return all(one.agrees for one in self.outcomes)
+
+    def parts(self) -> dict[str, dict[str, float]]:
+        """What the disagreement is split into: by the twin, by other models, by the budget."""
+        parts = {} if self.split is None else self.split.parts()
+        if self.budget is not None:
+            parts |= {
+                f"budget: {part}": {name: one.rms for name, one in readings.items()}
+                for part, readings in self.budget.parts.items()
+            }
+        return parts
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``side-by-side.json`` holds."""
-        found = {(self.reference, name): one for name, one in self.against.items()} | self.between
-        return {"comparisons": [{"names": [*names], **c.to_dict()} for names, c in found.items()]}
+        """What the JSON file holds."""
+        source = self.reference.source
+        found = {(source, name): one for name, one in self.against.items()} | self.between
+        return {
+            "case": self.case,
+            "engines": [*self.outcomes],
+            "split": None if self.split is None else self.split.to_dict(),
+            "parts": self.parts(),
+            "comparisons": [{"names": [*names], **one.to_dict()} for names, one in found.items()],
+        }
 
 
-def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBySide:
-    """Compare every candidate with the reference, and the candidates in pairs."""
-    return SideBySide(
-        {name: compare(reference, readings) for name, readings in candidates.items()},
-        {
-            (one, other): compare(candidates[one], candidates[other])
-            for one, other in combinations(candidates, 2)
-        },
+def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
+    apart = found.snap_off.difference
+    return replace(
+        one,
+        rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
+        snap_off_apart=None if apart is None else apart / found.reference.beam.length,
+        seconds_a_station=_seconds_a_station(found.candidate),
+        agrees=found.agrees,
+        likely="; ".join(_causes(found)),
     )
 
 
-def seconds_per_station(readings: Readings) -> float | None:
+def _seconds_a_station(readings: Readings) -> float | None:
     """Time of a sweep, if its source recorded it."""
     seconds = readings.provenance.get("seconds")
     return None if seconds is None else float(seconds) / len(readings.table)
 
 
-def against_table(found: SideBySide) -> Table:
-    """Each sweep against the reference."""
-    rows = []
-    for number, (name, one) in enumerate(found.against.items(), 1):
-        apart, took = one.snap_off.difference, seconds_per_station(one.candidate)
-        rows.append(
-            (
-                f"{number} {name}",
-                *(short(one.disagreement[reading].rms) for reading in CLAMP_READINGS),
-                short(apart),
-                "" if took is None else f"{1e3 * took:.1f}",
-            )
-        )
-    return Table(
-        f"Against {found.reference}: rms relative to each reading's largest magnitude",
-        ("candidate", *CLAMP_READINGS, "snap-off", "ms/station"),
-        rows,
+def _causes(found: Comparison) -> Iterator[str]:
+    """Why it disagrees, and why stations of its own are not to be trusted."""
+    if not found.agrees:
+        yield f"likely {found.likely}" if found.likely else "the readings alone do not show why"
+    unsettled = found.candidate.provenance.get("unsettled") or {}
+    if unsettled:
+        most = max(unsettled, key=unsettled.__getitem__)
+        yield f"{sum(unsettled.values())} stations unsettled, mostly as {most}"
+
+
+def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Path]:
+    """Write the page, its numbers, and its first picture."""
+    document = side_by_side_document(found)
+    first = next(document.pictures())
+    return [
+        write_whole(folder / f"{called}.html", html(document)),
+        write_whole(folder / f"{called}.json", as_json(found.to_dict())),
+        write_whole(folder / f"{called}.png", png(next(iter(first.figures.values())))),
+    ]
+
+
+def side_by_side_document(found: SideBySide) -> Document:
+    """All that there is to say of sweeps side by side."""
+    reference = found.reference
+    object_ = reference.provenance.get("profile") or "Contour not recorded"
+    return Document(
+        f"{found.case} side by side: {', '.join(one.name for one in found.outcomes)}",
+        f"{object_}; {len(reference.table)} stations. Differences are root mean squares over the "
+        "stations in contact, relative to each reading's largest magnitude.",
+        Verdict(
+            found.agree,
+            f"{'All' if found.agree else 'Not all'} agree with {_named(reference)}.",
+            "" if found.split is None else found.split.sentence,
+        ),
+        sections(
+            ("engines", "Sweeps", _sweeps(found)),
+            ("split", "What the disagreement is made of", _split(found)),
+            ("fairness", "What was set for each engine, and by whom", _fairness(found)),
+        ),
     )
 
 
-def between_table(found: SideBySide) -> list[Table]:
+def _named(reference: Readings) -> str:
+    return "the closed form" if reference.source == "analytic" else reference.source
+
+
+def summary(found: SideBySide) -> Iterator[Block]:
+    """Each sweep against the reference and each other, and what their differences are made of."""
+    yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
+    yield from _between(found)
+    if found.parts():
+        yield parts_table({found.case: found.parts()})
+
+
+def outcomes_table(
+    found: Mapping[str, Sequence[EngineOutcome]], reference: str = "the closed form"
+) -> Table:
+    """Each sweep against the reference, by case."""
+    rows = {
+        case: [
+            (
+                one.label,
+                *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
+                short(one.snap_off_apart),
+                "none" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
+                one.trouble or "; ".join(filter(None, (_verdict(one), one.likely))),
+            )
+            for one in outcomes
+        ]
+        for case, outcomes in found.items()
+    }
+    head = ("sweep", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
+    caption = f"Each against {reference}, relative rms"
+    return _by_case(caption, head, rows, [0, len(head) - 1])
+
+
+def _verdict(one: EngineOutcome) -> str:
+    return "agrees" if one.agrees else "disagrees"
+
+
+def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
+    """What the disagreement is made of, by case."""
+    rows = {
+        case: [(part, *(short(rms[name]) for name in CLAMP_READINGS)) for part, rms in of.items()]
+        for case, of in found.items()
+    }
+    head = ("part", *CLAMP_READINGS)
+    return _by_case("What the disagreement is made of, relative rms", head, rows, [0])
+
+
+def _by_case(
+    caption: str,
+    head: Sequence[str],
+    found: Mapping[str, Sequence[Sequence[str]]],
+    words: Sequence[int],
+) -> Table:
+    """The rows of all cases, with a column of the case if there are several."""
+    if len(found) == 1:
+        (rows,) = found.values()
+        return Table(caption, head, rows, words)
+    named = [(case, *row) for case, rows in found.items() for row in rows]
+    return Table(caption, ("case", *head), named, [0, *(i + 1 for i in words)])
+
+
+def _between(found: SideBySide) -> Iterator[Table]:
     """The sweeps against each other, if there are several."""
     rows = [
         (f"{one}, {other}", *(short(pair.disagreement[name].rms) for name in CLAMP_READINGS))
         for (one, other), pair in found.between.items()
     ]
-    return [Table("Each other, relative rms", ("pair", *CLAMP_READINGS), rows)] if rows else []
+    if rows:
+        yield Table("Each other, relative rms", ("pair", *CLAMP_READINGS), rows)
 
 
-def picture(found: SideBySide) -> Figure:
+def _sweeps(found: SideBySide) -> Iterator[Block]:
+    yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
+    yield from _between(found)
+    if any(one.role for one in found.outcomes):
+        yield Picture(
+            "time",
+            {"Error against time a station, a mark an engine": partial(error_against_time, found)},
+            "Error against time. Processor time of one process; an engine that is not tuned for "
+            "this can be faster.",
+        )
+    caption = "Differences from the reference over the foot position."
+    shows = "Differences over the foot position"
+    yield Picture("apart", {shows: partial(differences, found)}, caption)
+
+
+def _split(found: SideBySide) -> Iterator[Block]:
+    if found.parts():
+        yield parts_table({found.case: found.parts()})
+        yield Text(
+            "A twin computes the same discrete model with the same settings, so what it differs by "
+            "is implementation. The model's part is what the twin differs by from the closed form. "
+            "Budget parts are MuJoCo's: discretisation, facets, softness and unrest, measured by "
+            "controlled changes.",
+            aside=True,
+        )
+
+
+def _fairness(found: SideBySide) -> Iterator[Block]:
+    made = "All settings were made by the authors of this page's program, not by the engines' own"
+    rows = [(one.name, one.tuned) for one in found.outcomes if one.tuned]
+    if rows:
+        yield Table(f"{made} developers", ("engine", "what was set"), rows, words=(0, 1))
+
+
+def error_against_time(found: SideBySide) -> Figure:
+    """Draw the rms of each reading against the time a station, for all sweeps."""
+    figure = Figure(figsize=(7, 4.4), layout="constrained")
+    ax = figure.subplots()
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="processor time a station [ms], building the model included",
+        ylabel="rms relative to the largest magnitude",
+    )
+    ax.set_title(f"{style.label(found.case)}: error against time", fontsize=style.LARGE)
+    named = set()
+    for one in found.outcomes:
+        if one.rms is None:
+            continue
+        # One that records no time is a mark at the right edge.
+        timed = one.seconds_a_station is not None
+        x = 1e3 * one.seconds_a_station if one.seconds_a_station is not None else _EDGE
+        across = ax.transData if timed else ax.get_yaxis_transform()
+        for reading, rms in one.rms.items():
+            said = "_" if reading in named else style.SYMBOLS[reading]
+            colour, marker = style.READING_COLOURS[reading], style.READING_MARKERS[reading]
+            ax.plot(x, rms, marker, color=colour, label=said, transform=across)
+            named.add(reading)
+        ax.annotate(
+            style.label(one.name) + ("" if timed else ", no time"), (x, max(one.rms.values())),
+            (0, 8), xycoords=across, textcoords="offset points",
+            ha="center" if timed else "right", fontsize=style.SMALL,
+        )  # fmt: skip
+    ax.margins(0.25)
+    ax.grid(which="both", alpha=0.25)
+    if named:
+        ax.legend(frameon=False, fontsize=style.SMALL)
+    return figure
+
+
+def differences(found: SideBySide) -> Figure:
     """Draw how far the clamp readings are from the reference's, over the foot position."""
     figure = Figure(figsize=(12, 4.2), layout="constrained")
     axes = figure.subplots(1, 3, sharex=True)
@@ -93,13 +309,15 @@ def picture(found: SideBySide) -> Figure:
             ax.plot(
                 table["foot_x"].to_numpy() / first.reference.beam.length,
                 error.to_numpy() / one.disagreement[name].scale,
-                color=SERIES[i % len(SERIES)],
-                linestyle=LINE_STYLES[i % len(LINE_STYLES)],
-                label=label(candidate),
+                color=style.SERIES[i % len(style.SERIES)],
+                linestyle=style.LINE_STYLES[i % len(style.LINE_STYLES)],
+                label=style.label(candidate),
             )
         ax.ticklabel_format(axis="y", scilimits=(-2, 2))
-        ax.set_title(SYMBOLS[name], fontsize=LARGE)
+        ax.set_title(style.SYMBOLS[name], fontsize=style.LARGE)
         ax.set_xlabel(foot_label(first.reference))
-    axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
+    axes[0].set_ylabel(
+        f"difference from {style.label(found.reference.source)}\nrelative to largest magnitude"
+    )
     key_below(figure, axes[0], min(len(found.against), 4))
     return figure

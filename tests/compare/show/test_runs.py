@@ -107,7 +107,7 @@ def test_runs_in_many_engines_are_split(tmp_path):
     written = write_report(tmp_path / "runs", tmp_path / "out").path
     text = " ".join(written.read_text().split())
     assert "mujoco computes this model right" in text
-    assert '<td class="text">slow 1.0, twin</td><td>none</td>' in text
+    assert '<th scope="row">slow 1.0, twin</th><td>none</td>' in text
     assert "not finished after 20 s" in text
     assert "implementation: mujoco against drake" in text
 

@@ -6,9 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Readings, named_case, solve_sweep
+from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
 from compare import Tolerances
-from compare.show.side_by_side import seconds_per_station, side_by_side
+from compare.read.runs import EngineOutcome
+from compare.show.html import html
+from compare.show.side_by_side import (
+    SideBySide,
+    error_against_time,
+    outcomes_table,
+    side_by_side_document,
+)
 from tests.compare.command import vibrissa
 
 
@@ -31,7 +38,8 @@ def test_known_shifts_come_out(exact):
     ahead = foot_x - exact.snap_off > Tolerances().snap_off_window * np.ptp(foot_x)
     compared = moment[ahead & (exact.values("force_y") > 0)]
     rms = np.sqrt(np.mean(compared**2)) / np.abs(moment).max()
-    found = side_by_side(exact, {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)})
+    sweeps = {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)}
+    found = SideBySide.of(exact, sweeps)
     pairs = [*found.against.values(), *found.between.values()]
     assert [*found.against, *found.between] == ["a", "b", ("a", "b")]
     off = [one.disagreement["moment_z"].rms for one in pairs]
@@ -39,8 +47,8 @@ def test_known_shifts_come_out(exact):
     for one in pairs:
         assert one.disagreement["force_x"].rms == one.disagreement["force_y"].rms == 0
         assert one.snap_off.difference == 0
-    times = [seconds_per_station(one.candidate) for one in pairs]
-    np.testing.assert_allclose(times, [0.1, 0.2, 0.2])
+    times = [one.seconds_a_station for one in found.outcomes]
+    np.testing.assert_allclose(times, [0.1, 0.2])
 
 
 @pytest.mark.slow
@@ -53,7 +61,7 @@ def test_command(exact, tmp_path):
     )
     assert done.returncode == 1  # far is
     assert "far" in done.stdout
-    assert "100.0" in done.stdout  # ms/station
+    assert "1e+02" in done.stdout  # ms a station
     assert (tmp_path / "out/side-by-side.png").stat().st_size > 10_000
     found = json.loads((tmp_path / "out/side-by-side.json").read_text())["comparisons"]
     assert [one["verdict"] for one in found] == ["agrees", "disagrees", "disagrees"]
@@ -66,3 +74,34 @@ def test_command(exact, tmp_path):
     twice = vibrissa("compare", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
     assert twice.returncode == 2
     assert "each file once" in twice.stderr
+
+
+CASE = replace(named_case("tip-only"), sweep=replace(named_case("tip-only").sweep, stations=40))
+
+
+@pytest.fixture(scope="module")
+def many():
+    """A vibrissa 1 % too stiff, of an engine that records no time and had three bad stations."""
+    exact = solve_sweep(CASE)
+    table = exact.table.assign(**{name: 1.01 * exact.table[name] for name in CLAMP_READINGS})
+    about = {"engine": "Mine 1.2", "unsettled": {"it sleeps": 2, "it slides": 1}}
+    mine = replace(exact, table=table, source="mine", provenance=about)
+    asked = [EngineOutcome("mine", "other model", "1.2", "nothing", None)]
+    return SideBySide.of(exact, {"mine": mine}, asked, case=CASE.name)
+
+
+def test_the_cause_is_in_the_table_and_on_the_page(many):
+    (row,) = outcomes_table({many.case: many.outcomes}).rows
+    assert row[0] == "mine 1.2, other model"
+    assert row[-1].startswith("disagrees; likely ")
+    assert row[-1].endswith("3 stations unsettled, mostly as it sleeps")
+    assert row[-1] in html(side_by_side_document(many)).replace("&#39;", "'")
+
+
+def test_one_without_times_is_in_table_and_picture(many):
+    (row,) = outcomes_table({many.case: many.outcomes}).rows
+    assert row[-2] == "none"
+    figure = error_against_time(many)
+    assert len(figure.axes[0].lines) == len(CLAMP_READINGS)
+    assert [text.get_text() for text in figure.axes[0].texts] == ["mine, no time"]
+    figure.canvas.draw()
