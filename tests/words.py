@@ -1,6 +1,7 @@
 """Words that an engineer of today would not use: ``python -m tests.words``.
 
 Looks through all text that is kept: code, pages, templates, settings.
+``python -m tests.words pages`` counts the words of each page.
 """
 
 import re
@@ -26,6 +27,9 @@ BETTER = {
 _BANNED = {re.compile(rf"(?<![A-Za-z])(?:{x})(?![A-Za-z])", re.I): y for x, y in BETTER.items()}
 
 _ANY = re.compile(rf"(?<![a-z])(?:{'|'.join(BETTER)})(?![a-z])")  # in small letters
+
+_NO_WORDS = re.compile(r"^```.*?^```$|<!--.*?-->|(?<=\])\([^)]*\)", re.M | re.S)
+_LETTER = re.compile(r"\w")
 
 
 def files() -> list[Path]:
@@ -53,12 +57,27 @@ def offences() -> list[str]:
     return found
 
 
+def lengths() -> dict[str, int]:
+    """Words of each page but the list of changes: of text and tables, not of code or addresses."""
+    pages = [path for path in files() if path.suffix == ".md" and path.name != "CHANGELOG.md"]
+    found = {}
+    for path in pages:
+        text = _NO_WORDS.sub(" ", path.read_text(encoding="utf-8"))
+        found[str(path.relative_to(ROOT))] = sum(map(bool, map(_LETTER.search, text.split())))
+    return found
+
+
 def room(line: str) -> str:
     """The folder that a line is about."""
     return str(Path(line.split(":")[0]).parent)
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["pages"]:
+        counted = lengths()
+        print("\n".join(f"{n:6d} {page}" for page, n in counted.items()))
+        print(f"{sum(counted.values()):6d} in all")
+        sys.exit()
     wanted = sys.argv[1] if len(sys.argv) > 1 else ""
     lines = [line for line in offences() if line.startswith(wanted)]
     print("\n".join(lines))

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from analytic import InputError
@@ -41,23 +40,6 @@ class MethodsRecord:
     def levels(self) -> list[float]:
         """Levels of noise, ascending."""
         return sorted(self.table["noise"].unique().tolist())
-
-    def needs(self, method: str) -> str:
-        """What a method has to know beside the foot's position."""
-        if "needs" not in self.table:
-            return ""
-        return str(self.table.loc[self.table["method"] == method, "needs"].iloc[0])
-
-    def cell(self, method: str, readings: str, noise: float) -> str:
-        """Median errors by phase, as the page has them."""
-        said = []
-        for row in self._rows(method, readings, noise).to_dict("records"):
-            size = "none" if np.isnan(row["median"]) else short(row["median"])
-            size = f"below {short(_EXACT)}" if row["median"] < _EXACT else size
-            few = 0 < row["answered"] < _MOST
-            share = f" ({row['answered']:.0%})" if few else ""
-            said.append(f"{PHASE_LETTERS[row['phase']]} {size}{share}")
-        return ", ".join(said)
 
     def survivors(self, readings: str, noise: float) -> list[str]:
         """Methods that find nearly all contacts of every phase to 1 % of the length."""

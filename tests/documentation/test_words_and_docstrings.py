@@ -13,3 +13,10 @@ def test_docstrings():
 
 def test_words():
     assert not words.offences(), "\n".join(words.offences())
+
+
+def test_pages_are_short():
+    """So that one is read in five minutes."""
+    counted = words.lengths()
+    assert counted["README.md"] <= 700
+    assert not {page: n for page, n in counted.items() if n > 900}
