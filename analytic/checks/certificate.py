@@ -1,6 +1,7 @@
 """A certificate for every station: its conditions, checked by a route of their own."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -32,10 +33,12 @@ def certify(readings: Readings) -> pd.DataFrame:
         paper's vibrissa it is that of what the slope falls below the contour's by on the way, too:
         above it the vibrissa stays below the tangent at the contact, and so outside a convex body.
         ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta + mu r f. Zero where the vibrissa
-        is free, NaN where the readings have no contact to check.
+        is free, NaN where the readings have no contact to check. With a weight the march goes on to
+        the tip, contact or none: ``residual_moment`` is the moment that is left there, and
+        ``residual_boundary`` has what the tip's slope angle misses, too.
     """
     held = support_of(readings.provenance)
-    clamp_stiffness, friction, _ = held
+    clamp_stiffness, friction, _, weight = held
     beam = readings.beam
     turns = "clamp_angle" in readings.table
     plain = is_plain(beam, held) and not turns
@@ -59,33 +62,59 @@ def certify(readings: Readings) -> pd.DataFrame:
     compliance = beam.moment_unit / clamp_stiffness
     # Friction acts on the surface, and turns the force by the friction angle.
     arm = friction / math.sqrt(1 + friction**2) * radius / length
-    couple = arm * np.hypot(force_x, force_y)
+    heavy = any(weight)
+    w_x, w_y = (w * length / beam.force_unit for w in weight)
+    pushed = np.hypot(force_x + w_x, force_y + w_y)  # by the object
+    couple = arm * pushed
 
-    touching = np.isfinite(arc_length)
-    boundary = np.where(phase == "free", 0.0, np.nan)
-    balance = np.where(phase == "free", np.abs(moment), np.nan)
+    free = phase == "free"
+    touching = np.isfinite(arc_length) | (free & heavy)
+    boundary = np.where(free, 0.0, np.nan)
+    balance = np.where(free, np.abs(moment), np.nan)
     if touching.any():
-        end = integrate_span(
-            force_x[touching],
-            force_y[touching],
-            moment[touching],
-            arc_length[touching],
-            compliance=compliance,
-            clamp_angle=readings.clamp_angle[touching],
+        march = partial(
+            integrate_span,
             natural=lambda s: length * beam.curvature_at(length * s),
             breaks=beam.breaks / length,
             flexibility=lambda s: beam.base_rigidity / beam.rigidity_at(length * s),
+            weight=(w_x, w_y),
         )
+        reached = np.where(free, 1.0, arc_length)[touching]
+        end = march(
+            force_x[touching],
+            force_y[touching],
+            moment[touching],
+            reached,
+            compliance=compliance,
+            clamp_angle=readings.clamp_angle[touching],
+        )
+        turned = np.arctan2(-force_x - w_x, force_y + w_y) - math.atan(friction) - alpha
+        if heavy:  # of a small force beside a large weight the direction is lost
+            turned = pushed * turned
         misses = [
             end.x - x[touching],
             end.y - y[touching],
             end.phi - slope[touching],
             end.moment + couple[touching],
-            (np.arctan2(-force_x, force_y) - math.atan(friction) - alpha)[touching],
+            turned[touching],
             np.maximum(0.0, arc_length[touching] - 1),
             np.maximum(0.0, slope[touching] - alpha[touching] - np.pi),
             np.maximum(0.0, along[touching] - (end.least_phi if plain else slope[touching])),
         ]
+        left = (moment - (force_y * x - force_x * y) - couple)[touching]
+        if heavy:
+            held = np.where(free, 0.0, couple)[touching] + end.moment
+            beyond = march(
+                -w_x * (1 - reached),
+                -w_y * (1 - reached),
+                -held,
+                np.ones_like(reached),
+                clamp_angle=end.phi - np.pi / 2,
+                begin=reached,
+            )
+            left = misses[3] = beyond.moment
+            misses = [np.where(free[touching], 0.0, missed) for missed in misses]
+            misses += [beyond.phi - tip_angle[touching], np.where(free, pushed, 0.0)[touching]]
         boundary[touching] = np.abs(misses).max(axis=0)
-        balance[touching] = np.abs(moment - (force_y * x - force_x * y) - couple)[touching]
+        balance[touching] = np.abs(left)
     return pd.DataFrame({"residual_boundary": boundary, "residual_moment": balance})

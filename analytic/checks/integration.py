@@ -39,10 +39,13 @@ def integrate_span(
     natural: Quantity = _none,
     flexibility: Quantity = np.ones_like,
     breaks: Sequence[float] | Floats = (),
+    weight: tuple[float, float] = (0.0, 0.0),
+    begin: float | Floats = 0.0,
 ) -> End:
     """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
 
-    No elliptic integral is used.
+    No elliptic integral is used. The span may begin elsewhere, with the upright turned by
+    `clamp_angle` there, and end at `length`.
 
     The initial value problem of section 5 takes kappa from a square root that vanishes at the
     contact, where its solution is not unique; m' = f cos(phi - alpha) is smooth throughout.
@@ -51,21 +54,21 @@ def integrate_span(
 
     n = len(moment)
 
-    def rate(share: float, state: Floats, begin: Floats, length: Floats) -> Floats:
+    def rate(share: float, state: Floats, low: Floats, length: Floats) -> Floats:
         phi, m = state.reshape(4, n)[2:]
         cos, sin = np.cos(phi), np.sin(phi)
-        s = begin + share * length
+        s = low + share * length
         kappa = natural(s) + m * flexibility(s)
-        return np.concatenate(
-            [length * cos, length * sin, length * kappa, length * (force_y * cos - force_x * sin)]
-        )
+        carried_x, carried_y = (w * (s - begin) for w in weight)
+        bends = (force_y + carried_y) * cos - (force_x + carried_x) * sin
+        return np.concatenate([length * cos, length * sin, length * kappa, length * bends])
 
     state = np.concatenate(
         [np.zeros(2 * n), np.pi / 2 + clamp_angle - compliance * moment, -moment]
     )
     least_phi = np.full(n, np.inf)
     for low, high in pairwise([0.0, *breaks, 1.0]):
-        begin = np.minimum(low, length)
+        first, last = (np.minimum(np.maximum(at, begin), length) for at in (low, high))
         found = solve_ivp(
             rate,
             (0.0, 1.0),
@@ -74,7 +77,7 @@ def integrate_span(
             rtol=tolerance,
             atol=tolerance,
             t_eval=_MARKS,
-            args=(begin, np.minimum(high, length) - begin),
+            args=(first, last - first),
         )
         state = found.y[:, -1]
         least_phi = np.minimum(least_phi, found.y.reshape(4, n, len(_MARKS))[2].min(axis=1))

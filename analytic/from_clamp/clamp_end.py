@@ -19,8 +19,8 @@ from scipy.special import elliprf
 
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.rod import RodProperties
 from analytic.solver.general.march import SpanEnd, Trail, march
-from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import Vibrissa
 

@@ -8,7 +8,7 @@ from analytic.from_clamp.clamp_end import ClampEnd
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED, units
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain
+from analytic.problem.support import is_plain, require_weightless
 from analytic.solver.elastica import frame, span_of_moment
 from analytic.solver.general.states import Vibrissa
 
@@ -59,6 +59,7 @@ class SweptVibrissa(NamedTuple):
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
         held = readings.support.mirrored() if rightward else readings.support
+        require_weightless("the way from the clamp to the contact", held)
         return cls(Vibrissa.of(beam, held), is_plain(beam, held), -1.0 if rightward else 1.0)
 
     def clamp_end(self, sensed: Floats) -> ClampEnd:

@@ -16,7 +16,7 @@ from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
 from analytic.problem.first_touch import first_on_way
-from analytic.problem.numbers import within
+from analytic.problem.numbers import pair, within
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import FirstTouch, first_touch
@@ -27,6 +27,7 @@ from analytic.problem.support import (
     check_support,
     is_plain,
     require_plain,
+    require_weightless,
     support_record,
 )
 from analytic.problem.unloaded import Unloaded
@@ -59,6 +60,9 @@ class Case(Shown):
         Coulomb's coefficient between a sliding vibrissa and the object, from 0 to 1.
     clamp_angle : float
         By which the clamp leans to the left of the upright, phi(0) = pi/2 + clamp_angle [rad].
+    weight : tuple of float
+        That of the vibrissa along x and y, by length [force/length]: (0, -m g/L) if its clamp
+        stands below it on a table.
 
     Raises
     ------
@@ -75,6 +79,7 @@ class Case(Shown):
     clamp_stiffness: float = field(default=math.inf, kw_only=True)
     friction: float = field(default=0.0, kw_only=True)
     clamp_angle: float = field(default=0.0, kw_only=True)
+    weight: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
 
     def __post_init__(self) -> None:
         for name, kind, remedy in (
@@ -84,8 +89,9 @@ class Case(Shown):
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
+        object.__setattr__(self, "weight", pair("weight", self.weight))
         check_support(self.support, self.beam)
-        for name in Support._fields:
+        for name in ("clamp_stiffness", "friction", "clamp_angle"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if not isinstance(self.sweep, Sweep):
             self._check_way()
@@ -109,13 +115,13 @@ class Case(Shown):
 
     @property
     def support(self) -> Support:
-        """Clamp and friction."""
-        return Support(self.clamp_stiffness, self.friction, self.clamp_angle)
+        """Clamp, friction and weight."""
+        return Support(self.clamp_stiffness, self.friction, self.clamp_angle, self.weight)
 
     @property
     def unloaded(self) -> Unloaded:
-        """The vibrissa at rest in its clamp, dimensionless."""
-        return self.support.unloaded(self.beam)
+        """The vibrissa that touches nothing, in its clamp, under its weight; dimensionless."""
+        return self.support.at_rest(self.beam).shape
 
     @cached_property
     def centreline(self) -> Contour:
@@ -127,6 +133,9 @@ class Case(Shown):
         if self.clamp_angle:
             remedy = "add it to the angles of the way"
             raise InputError("clamp_angle", self.clamp_angle, "0 where the clamp turns", remedy)
+        if any(self.weight):
+            allowed = "(0, 0) where the clamp turns or leaves its line"
+            raise InputError("weight", self.weight, allowed, "sweep it along x, or leave it out")
         if self.direction == "left":
             _ = self.touch
         else:
@@ -232,13 +241,14 @@ class Case(Shown):
         Raises
         ------
         InputError
-            If the vibrissa is curved at rest or not uniform, its clamp turns or leans, or it rubs.
+            If the vibrissa is curved at rest, heavy or not uniform, its clamp turns or leans, or it
+            rubs.
         """
         require_plain(who, self.beam, self.support)
         self.require_upright(who)
 
     def require_upright(self, who: str) -> None:
-        """Refuse a case whose clamp leans or turns, or leaves its line.
+        """Refuse a case whose clamp leans or turns, or leaves its line, or that has a weight.
 
         Parameters
         ----------
@@ -251,6 +261,7 @@ class Case(Shown):
             If it leans.
         """
         self.require_sweep(who)
+        require_weightless(who, self.support)
         if self.clamp_angle:
             allowed = f"0: {who} cannot take it into account"
             raise InputError("clamp_angle", self.clamp_angle, allowed, "leave it out")
@@ -326,8 +337,10 @@ class Case(Shown):
             base_curvature = float(beam.curvature_at(0.0))
             beyond = base_curvature, self.clamp_stiffness, self.friction
             numbers = np.append(numbers, beyond)
-        if self.clamp_angle:
+        if self.clamp_angle or any(self.weight):
             numbers = np.append(numbers, self.clamp_angle)
+        if any(self.weight):
+            numbers = np.append(numbers, self.weight)
         text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
         if beam.varies:
             given = asdict(beam)
@@ -343,7 +356,8 @@ class Case(Shown):
         dict
             ``case`` and ``profile`` by name, ``digest``, and ``contour``: two lists, xi and eta
             [length]; ``support``, if the clamp turns or leans or the object rubs:
-            ``clamp_stiffness``, None if rigid, ``friction``, and ``clamp_angle``, unless upright.
+            ``clamp_stiffness``, None if rigid, ``friction``, ``clamp_angle``, unless upright, and
+            ``weight_x`` and ``weight_y``, if it has any.
         """
         xi, eta = self.outline()
         return {
@@ -440,10 +454,10 @@ class Case(Shown):
 
     @cached_property
     def _first_contact(self) -> float:
-        if self.beam.natural_curvature != 0 or self.beam.varies or self.clamp_angle:
+        if self.beam.varies or self.unloaded.most_turned:
             if self._way > 0:
                 mirrored = self.centreline.mirrored()
-                rest = self.support.mirrored().unloaded(self.beam.mirrored())
+                rest = self.support.mirrored().at_rest(self.beam.mirrored()).shape
                 return -first_touch(mirrored, contact_range(mirrored), rest).p
             return first_touch(self.centreline, self.reach, self.unloaded).p
         left, right = self.reach

@@ -5,12 +5,12 @@ from typing import Any
 
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import floats
-from analytic.problem.support import Support
+from analytic.problem.support import RECORDED
 
 
 def check_provenance(provenance: Mapping[str, Any]) -> None:
     """Refuse what readings could not use."""
-    for name, known in (("events", None), ("support", set(Support._fields))):
+    for name, known in (("events", None), ("support", RECORDED)):
         value = provenance.get(name, {})
         fits = isinstance(value, Mapping) and (known is None or set(value) <= known)
         if not fits or not all(_is_number(x) for x in value.values()):

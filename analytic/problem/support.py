@@ -8,13 +8,16 @@ from typing import Any, NamedTuple
 from analytic.problem.along import Along
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.errors import InputError
+from analytic.problem.hanging import AtRest, at_rest
 from analytic.problem.numbers import within
+from analytic.problem.rod import RodProperties
 from analytic.problem.unloaded import Unloaded
 
 _MOST_FRICTION = 1.0
 _SOFTEST = 0.01  # EI/L, of the clamp
 _MOST_LEANT = 1.55  # rad; the vibrissa of a clamp that leans more lies along the foot's line
 _MOST_TURNED = math.pi / 2  # rad; beyond, the vibrissa at rest leans over itself
+_HEAVIEST = 20.0  # EI/L^3; an upright vibrissa buckles under 7.84
 
 
 class Support(NamedTuple):
@@ -23,6 +26,7 @@ class Support(NamedTuple):
     clamp_stiffness: float = math.inf  # moment by angle [force length/rad]
     friction: float = 0.0  # Coulomb's coefficient
     clamp_angle: float = 0.0  # by which the clamp leans to the left of the upright [rad]
+    weight: tuple[float, float] = (0.0, 0.0)  # of the vibrissa along x and y, by length
 
     @property
     def is_plain(self) -> bool:
@@ -31,27 +35,50 @@ class Support(NamedTuple):
 
     def mirrored(self) -> "Support":
         """The mirror image, x to -x."""
-        return self._replace(clamp_angle=0.0 - self.clamp_angle)
+        weight = 0.0 - self.weight[0], self.weight[1]
+        return self._replace(clamp_angle=0.0 - self.clamp_angle, weight=weight)
 
     def unloaded(self, beam: Beam) -> Unloaded:
-        """A vibrissa at rest in this clamp, dimensionless."""
+        """A vibrissa without weight in this clamp, dimensionless."""
         return replace(beam.unloaded, angle=self.clamp_angle)
+
+    def at_rest(self, beam: Beam) -> AtRest:
+        """A vibrissa that touches nothing, under its weight, dimensionless."""
+        unloaded = self.unloaded(beam)
+        if not any(self.weight):
+            return AtRest(unloaded, 0.0, stands=True)
+        rod = RodProperties.of(beam, unloaded, self.weight)
+        return at_rest(rod, beam.moment_unit / self.clamp_stiffness)
 
 
 UPRIGHT = Support()
-"""The paper's clamp, and no friction."""
+"""The paper's clamp, no friction and no weight."""
+_WEIGHT = ("weight_x", "weight_y")
+RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}
+"""Names of what provenance says of all that."""
 
 
 def check_support(held: Support, beam: Beam, signed: bool = False) -> None:
     """Refuse a clamp or a friction that cannot be."""
-    clamp_stiffness, friction, clamp_angle = held
+    clamp_stiffness, friction, clamp_angle, weight = held
     if not (isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf):
         remedy = "it is moment by angle, at least a hundredth of EI/L; a rigid clamp has none"
         within("clamp_stiffness", clamp_stiffness, _SOFTEST * beam.moment_unit, remedy=remedy)
     least = -_MOST_FRICTION if signed else 0.0
     within("friction", friction, least, _MOST_FRICTION, "0.1 to 0.5 is usual")
     within("clamp_angle", clamp_angle, -_MOST_LEANT, _MOST_LEANT, "it is in rad, from the upright")
-    turned = held.unloaded(beam).most_turned
+    unit = beam.force_unit / beam.length
+    for value, name in zip(weight, "xy", strict=True):
+        remedy = "it is force by length: gravity times mass by length"
+        within(f"weight.{name}", value, -_HEAVIEST * unit, _HEAVIEST * unit, remedy)
+    rest = held.at_rest(beam)
+    turned = rest.shape.most_turned
+    if not (rest.stands and (turned <= _MOST_TURNED or not any(weight))):
+        fall = f"turns it by {turned:.6g} rad" if rest.stands else "buckles it"
+        what = f"{tuple(weight)}, which {fall} at rest"
+        allowed = f"such that it stands and turns by at most {_MOST_TURNED:.6g} rad"
+        remedy = "lessen it: upright and uniform it stands below 7.837 EI/L^3"
+        raise InputError("weight", what, allowed, remedy)
     if clamp_angle and turned > _MOST_TURNED:
         what = f"{clamp_angle:g}, where the vibrissa at rest turns by up to {turned:.6g} rad"
         allowed = f"such that it turns by at most {_MOST_TURNED:.6g} rad"
@@ -79,9 +106,17 @@ def require_uniform(who: str, beam: Beam) -> None:
         raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
 
 
+def require_weightless(who: str, held: Support) -> None:
+    """Refuse a vibrissa that has a weight."""
+    for name, value in zip(_WEIGHT, held.weight, strict=True):
+        if value:
+            raise InputError(name, value, f"0: {who} cannot take it into account", "leave it out")
+
+
 def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
     """Refuse what someone cannot take into account."""
     require_uniform(who, beam)
+    require_weightless(who, held)
     for name, value, plain in (
         ("beam.natural_curvature", beam.natural_curvature, 0.0),
         ("clamp_stiffness", held.clamp_stiffness, math.inf),
@@ -102,6 +137,8 @@ def beyond_the_paper(beam: Beam, held: Support) -> dict[str, Varying]:
         ("clamp stiffness", held.clamp_stiffness, math.inf),
         ("friction", held.friction, 0.0),
         ("clamp angle", held.clamp_angle, 0.0),
+        ("weight along x", held.weight[0], 0.0),
+        ("weight along y", held.weight[1], 0.0),
     )
     return {name: value for name, value, plain in numbers if value != plain}
 
@@ -112,7 +149,8 @@ def support_record(held: Support) -> dict[str, Any]:
         return {}
     stiffness = held.clamp_stiffness if held.clamp_stiffness < math.inf else None
     leant = {"clamp_angle": held.clamp_angle} if held.clamp_angle else {}
-    return {"support": {"clamp_stiffness": stiffness, "friction": held.friction, **leant}}
+    heavy = dict(zip(_WEIGHT, held.weight, strict=True)) if any(held.weight) else {}
+    return {"support": {"clamp_stiffness": stiffness, "friction": held.friction, **leant, **heavy}}
 
 
 def support_of(provenance: Mapping[str, Any]) -> Support:
@@ -120,4 +158,5 @@ def support_of(provenance: Mapping[str, Any]) -> Support:
     held = provenance.get("support", {})
     stiffness = float(held.get("clamp_stiffness") or math.inf)
     friction, angle = (float(held.get(name) or 0.0) for name in ("friction", "clamp_angle"))
-    return Support(stiffness, friction, angle)
+    w_x, w_y = (float(held.get(name) or 0.0) for name in _WEIGHT)
+    return Support(stiffness, friction, angle, (w_x, w_y))

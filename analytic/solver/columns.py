@@ -8,7 +8,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASE_NUMBER, STATUS_NUMBER
-from analytic.solver.general.states import States
+from analytic.solver.general.states import States, Vibrissa
 
 Numbers: TypeAlias = Floats | Integers
 ReadingColumns: TypeAlias = dict[str, Numbers]
@@ -38,8 +38,19 @@ class Units(NamedTuple):
         return Units(*(np.broadcast_to(unit, chosen.shape)[chosen] for unit in self))
 
 
+def columns_at_rest(vibrissa: Vibrissa, foot_x: Floats, units: Units) -> ReadingColumns:
+    """The readings of one that touches nothing, at foot positions [length]."""
+    rest, (w_x, w_y) = vibrissa.at_rest, vibrissa.weight
+    tip_angle = float(rest.shape.at(np.array(1.0))[2])
+    columns = unloaded_columns(foot_x, tip_angle)
+    columns["force_x"][:] = 0.0 - w_x * units.force
+    columns["force_y"][:] = 0.0 - w_y * units.force
+    columns["moment_z"][:] = rest.moment * units.moment
+    return columns
+
+
 def unloaded_columns(foot_x: Floats, tip_angle: float | Floats = np.pi / 2) -> ReadingColumns:
-    """The readings of vibrissae that touch nothing."""
+    """The readings of vibrissae without weight that touch nothing."""
     empty = np.full((len(COLUMNS), foot_x.size), np.nan)
     columns: ReadingColumns = dict(zip(COLUMNS, empty, strict=True))
     columns["foot_x"] = foot_x
@@ -60,17 +71,21 @@ def to_columns(found: States, units: Units) -> ReadingColumns:
     force, into, onward = found.force * units.force, sine, cosine
     if np.any(mu):
         into, onward = sine + mu * cosine, cosine - mu * sine
+    force_x, force_y = -force * into, force * onward
+    w_x, w_y = vibrissa.weight
+    if w_x or w_y:
+        force_x, force_y = force_x - w_x * units.force, force_y - w_y * units.force
     return {
         "foot_x": found.foot_x * units.length,
-        "force_x": -force * into,
-        "force_y": force * onward,
+        "force_x": force_x,
+        "force_y": force_y,
         "moment_z": found.moment * units.moment,
         "phase": np.where(found.tangent, PHASE_NUMBER["tangent"], PHASE_NUMBER["tip"]),
         "contact_angle": alpha,
         "contact_arc_length": length * units.length,
         "contact_x": (xi - radius * sine) * units.length,
         "contact_y": (eta + radius * cosine) * units.length,
-        "tip_angle": found.tip_angle + vibrissa.turn_after(length),
+        "tip_angle": found.last_angle,
         "status": np.where(
             np.isnan(found.excess), STATUS_NUMBER["unreachable"], STATUS_NUMBER["ok"]
         ),

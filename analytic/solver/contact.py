@@ -11,6 +11,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
+from analytic.problem.numbers import pair
 from analytic.problem.support import Support, check_support
 from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns, without
@@ -31,6 +32,7 @@ def solve_contact(
     clamp_stiffness: float = math.inf,
     friction: float = 0.0,
     clamp_angle: float = 0.0,
+    weight: tuple[float, float] = (0.0, 0.0),
 ) -> pd.DataFrame:
     """Clamp readings and contact of a vibrissa that touches `profile` where its slope is `alpha`.
 
@@ -49,6 +51,8 @@ def solve_contact(
         the right, as in a sweep to the left; negative for the other sense of sliding.
     clamp_angle : float
         By which the clamp leans to the left of the upright [rad].
+    weight : tuple of float
+        That of the vibrissa along x and y, by length [force/length].
 
     Returns
     -------
@@ -70,7 +74,7 @@ def solve_contact(
     beam = Beam() if beam is None else beam
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
-    held = Support(clamp_stiffness, friction, clamp_angle)
+    held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam, signed=True)
     try:
         angles = np.atleast_1d(np.asarray(alpha, dtype=float))

@@ -17,6 +17,7 @@ from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
+from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
@@ -128,6 +129,7 @@ def find_events(
     clamp_stiffness: float = math.inf,
     friction: float = 0.0,
     clamp_angle: float = 0.0,
+    weight: tuple[float, float] = (0.0, 0.0),
 ) -> Events:
     """The events of a sweep of `beam` along `profile`, each with the readings there.
 
@@ -143,6 +145,8 @@ def find_events(
         Coulomb's coefficient, from 0 to 1.
     clamp_angle : float
         By which the clamp leans to the left of the upright [rad].
+    weight : tuple of float
+        That of the vibrissa along x and y, by length [force/length].
 
     Returns
     -------
@@ -160,7 +164,7 @@ def find_events(
     beam = Beam() if beam is None else beam
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
-    held = Support(clamp_stiffness, friction, clamp_angle)
+    held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam)
     contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     reach = contact_range(contour)
@@ -246,7 +250,7 @@ def _plain_events(
 def _general_events(
     contour: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
 ) -> Events:
-    touch = first_touch(contour, reach, vibrissa.unloaded)
+    touch = first_touch(contour, reach, vibrissa.at_rest.shape)
     path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
     if not path.complete:
         place = f"beyond foot_x = {path.p[-1] * beam.length:.6g}"

@@ -19,6 +19,7 @@ from analytic.solver.general.march import march
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import Vibrissa
 
+_ROUNDING = 1e-13  # of the weight; of the moment of one that touches nothing
 _SOLVED = 1e-11  # of what a state misses: hundreds of roundings at the sharpest bends
 
 
@@ -45,7 +46,9 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
         return np.asarray(columns[name], dtype=float) / unit
 
     mu = vibrissa.friction
-    force_x, force_y = (column(name, units.force) for name in ("force_x", "force_y"))
+    w_x, w_y = vibrissa.weight  # the clamp carries it beside the contact's force
+    force_x = column("force_x", units.force) + w_x
+    force_y = column("force_y", units.force) + w_y
     moment = column("moment_z", units.moment)
     foot_x, xi, eta, length = (
         column(name, units.length)
@@ -56,33 +59,48 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
         foot_y = column("foot_y", units.length)
     if "clamp_angle" in columns:
         vibrissa = vibrissa._replace(clamp_angle=column("clamp_angle"))
-    slope = column("tip_angle") - vibrissa.turn_after(length)
+    tip_angle = column("tip_angle")
+    slope = tip_angle - vibrissa.turn_after(length)
+    along = alpha + vibrissa.lean
+    on_side = np.where(slope - alpha > np.pi / 2, alpha + np.pi - vibrissa.lean, along)
+    tangent = columns["phase"] == PHASE_NUMBER["tangent"]
+    held = np.where(tangent, on_side, tip_angle)
+    hung = vibrissa.hung(held, length)
     radius = vibrissa.radius_at(length)
     x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha) - foot_y
     force, lean = np.hypot(force_x, force_y), np.arctan(mu)
     # Of no force, as where a tip leaves the object, any direction is right.
     direction = np.where(force > 0, np.arctan2(-force_x, force_y), alpha + lean)
     couple = mu / np.sqrt(1 + mu**2) * radius * force
+    turned, tip_missed = direction - lean - alpha, np.zeros_like(x)
+    if hung is not None:  # of a small force beside a large weight the direction is lost
+        direction, turned = alpha + lean, force * turned
+        slope, tip_missed = held, hung.slope[:, -1] - tip_angle
+        couple = couple - hung.base
     span = _span(vibrissa, moment, slope - direction, couple, force, direction, length)
     sin, cos = np.sin(direction), np.cos(direction)
-    along = alpha + vibrissa.lean
-    on_side = np.where(slope - alpha > np.pi / 2, alpha + np.pi - vibrissa.lean, along)
     missed = [
         span.along * cos - span.across * sin - x,
         span.along * sin + span.across * cos - y,
         span.first,
         span.second,
-        direction - lean - alpha,
+        turned,
+        tip_missed,
         np.maximum(0.0, length - 1),
         np.maximum(0.0, along - slope),
-        np.where(columns["phase"] == PHASE_NUMBER["tangent"], slope - on_side, 0.0),
+        np.where(tangent, slope - on_side, 0.0),
     ]
     extent = np.maximum(1.0, np.abs(xi))
-    balance = np.abs(moment - (force_y * x - force_x * y) - couple)
+    unbalanced = moment - (force_y * x - force_x * y) - couple if hung is None else span.second
     free = np.isnan(length) & (moment == 0)
+    if hung is not None:
+        unheld = np.abs(moment - vibrissa.at_rest.moment) <= _ROUNDING * np.hypot(w_x, w_y)
+        free = np.isnan(length) & unheld
     return {
         "residual_boundary": np.where(free, 0.0, np.abs(missed).max(axis=0) / extent),
-        "residual_moment": np.where(free, 0.0, balance / np.maximum(extent, np.abs(moment))),
+        "residual_moment": np.where(
+            free, 0.0, np.abs(unbalanced) / np.maximum(extent, np.abs(moment))
+        ),
     }
 
 
@@ -113,7 +131,8 @@ def _span(
         return _Span(C, S, q - length, sine - np.sin(slope))
     clamp = np.pi / 2 + vibrissa.clamp_angle - vibrissa.compliance * moment - direction
     if vibrissa.rod is not None:
-        end = march(vibrissa.rod, slope, -couple, force, length, finer=2)
+        ends = slope, -couple, force, length
+        end = march(vibrissa.rod, *ends, direction=direction, finer=2)
         return _Span(end.along, end.across, end.theta - clamp, end.m + moment)
     # A span run through from its other end has the opposite curvature.
     natural = vibrissa.natural_curvature

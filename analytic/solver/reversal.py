@@ -12,7 +12,7 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import finite
 from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
-from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns
+from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.general.stations import solve_places
@@ -31,7 +31,7 @@ class SlidingBranch:
     def of(cls, case: Case, sense: float) -> "SlidingBranch":
         """Follow the states that slide on (1), or back (-1)."""
         vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
-        touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
+        touch = first_touch(case.centreline, case.reach, vibrissa.at_rest.shape)
         path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
         if not path.complete:
             place = path.p[-1] * case.beam.length
@@ -174,7 +174,7 @@ def _check(case: Case) -> None:
 
 def _unloaded(case: Case, foot: Floats) -> ReadingColumns:
     """The readings of a vibrissa that touches nothing, with no angle of friction."""
-    columns = unloaded_columns(foot, float(case.unloaded.at(np.array(1.0))[2]))
+    columns = columns_at_rest(Vibrissa.of_case(case), foot, Units.of(case.beam))
     return {**columns, "friction_angle": np.full(foot.size, np.nan)}
 
 

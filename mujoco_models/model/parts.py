@@ -4,6 +4,7 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
+from analytic.problem.support import require_weightless
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.beams.protocol import Beam
@@ -16,6 +17,7 @@ from mujoco_models.settings import Settings
 def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
     """The beam and the obstacle, before an engine makes a model of them."""
     require_radius(case.radius, engine)
+    require_weightless(engine, case.support)
     for who, tried in (
         ("a cable", settings.beam == "cable"),
         ("out of the plane", not settings.planar),

@@ -46,8 +46,8 @@ def _starts_outside(contact: States) -> Booleans:
 
 
 def _towards(contact: States) -> Floats:
-    """Natural curvature at the contact, towards the object there."""
-    natural = contact.vibrissa.unloaded.curvature(contact.arc_length)
+    """Curvature just beyond the contact, towards the object there."""
+    natural = contact.end_curvature
     return np.where(contact.side > 0, -natural, natural)
 
 
@@ -86,6 +86,8 @@ def _passes_corners(contour: Contour, contact: States) -> Booleans:
 def _bends_one_way(contact: States) -> Booleans:
     """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
     vibrissa, natural = contact.vibrissa, contact.vibrissa.natural_curvature
+    if any(vibrissa.weight):
+        return np.zeros(len(contact.force), dtype=bool)
     if vibrissa.rod is not None:
         # The moment about places on the way to the clamp grows, and then may fall to the clamp's.
         held = (contact.couple >= 0) & (contact.moment >= 0) & (contact.amplitude < np.pi)
@@ -106,7 +108,8 @@ def _is_outside(contour: Contour, contact: States) -> Booleans:
 def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
     """Whether the unloaded vibrissa stays outside the object."""
     s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, pose.foot_x.size))
-    x, y, _ = replace(vibrissa.unloaded, angle=0.0).at(s)
+    rest, clamp_angle = vibrissa.at_rest.shape, float(vibrissa.clamp_angle)
+    x, y, _ = replace(rest, angle=rest.angle - clamp_angle).at(s)
     outside = _outside(contour, *pose.place(x, y), vibrissa.unloaded.taper(s))
     return np.asarray(outside.all(axis=0))
 
@@ -123,16 +126,19 @@ def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
             np.broadcast_to(contact.couple, s.shape),
             np.broadcast_to(push * contact.force, s.shape),
             contact.arc_length - s,
+            place.alpha + lean,
         )
         along, across = part.along, part.across
     else:
         trail: list[Trail] = []
+        beyond = vibrissa.moment_beyond(contact.tip_angle, contact.arc_length)
         march(
             vibrissa.rod,
             slope,
-            -contact.couple,
+            -contact.couple if beyond is None else beyond - contact.couple,
             push * contact.force,
             contact.arc_length,
+            direction=place.alpha + lean,
             trail=trail,
         )
         s, along, across = (np.concatenate(parts) for parts in zip(*trail, strict=True))
@@ -145,8 +151,11 @@ def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
 
 
 def _free(contact: States) -> tuple[Floats, Floats, Floats]:
-    """Arc length and place of parts of the free end, unloaded, shape (16, n)."""
+    """Arc length and place of parts of the free end, shape (k, n)."""
     rest, place, begin = contact.vibrissa.unloaded, contact.offset_point, contact.arc_length
+    hung = contact.vibrissa.hung(contact.tip_angle, begin)
+    if hung is not None:
+        return hung.s.T, place.xi + hung.x.T, place.eta + hung.y.T
     s = begin + (1 - begin) * _PLACES[:, None]
     x, y, _ = rest.at(s)
     first_x, first_y, slope = rest.at(begin)

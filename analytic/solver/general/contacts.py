@@ -27,7 +27,7 @@ def contacts(contour: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     vibrissa there, as it is given its curvature, its elastic clamp and its friction.
     """
     reach = contact_range(contour)
-    touch = first_touch(contour, reach, vibrissa.unloaded)
+    touch = first_touch(contour, reach, vibrissa.at_rest.shape)
     path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
     z = _solved(contour, vibrissa, path, t)
     return states(contour.at(t), z[:, 0], z[:, 1], vibrissa)

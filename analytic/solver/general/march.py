@@ -4,7 +4,11 @@ With the moment of a dead force F of slope angle phi_F the span obeys, theta = p
 
     theta' = kappa0(s) + m EI(0)/EI(s),    m' = F cos(theta),
 
-in the units of EI(0). On panels that resolve rigidity and natural curvature, and are shorter than
+in the units of EI(0), and with a weight w by length, of which w (1 - s) hangs beyond a place,
+
+    m' = F cos(theta) + (1 - s) (w_x sin(phi) - w_y cos(phi)).
+
+On panels that resolve rigidity and natural curvature, and are shorter than
 a wave of the pendulum's over 2 pi, the solution is a polynomial through the points of Gauss and
 Legendre, which makes its end exact to order 24 (Hairer, Lubich and Wanner, *Geometric Numerical
 Integration*, II.1.3). It is found by Picard's iteration, for all spans at a time.
@@ -18,9 +22,9 @@ import numpy as np
 from scipy.special import gammaln
 
 from analytic.numerics.batches import put, take
+from analytic.numerics.panel import TO_NODES, WEIGHTS, Panel
 from analytic.problem.arrays import Floats, Integers
-from analytic.solver.general.panel import TO_NODES, WEIGHTS, Panel
-from analytic.solver.general.rod import RodProperties
+from analytic.problem.rod import RodProperties
 from analytic.solver.general.span import Start
 
 _ITERATIONS = np.arange(30)
@@ -56,15 +60,20 @@ def march(
     force: Floats,
     length: Floats,
     *,
+    direction: Floats | float = 0.0,
     from_clamp: bool = False,
     finer: int = 1,
     trail: list[Trail] | None = None,
 ) -> SpanEnd:
-    """March along spans from the contact to the clamp, or back."""
-    nowhere = ~((force >= 0) & (length >= 0))
+    """March along spans from the contact to the clamp, or back.
+
+    Of one that has a weight the slope angle of the force counts, too.
+    """
+    nowhere = ~((force >= 0) & (length >= 0) & np.isfinite(direction))
     here = SpanEnd(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
-    force = np.where(nowhere, 0.0, force)
-    ends = _panels(rod, force, length, finer).tolist()
+    force, direction = np.where(nowhere, 0.0, force), np.where(nowhere, 0.0, direction)
+    pull = _Pull.of(rod, force, direction)
+    ends = _panels(rod, pull.largest, length, finer).tolist()
     panels = list(pairwise(ends))
     for low, high in panels if from_clamp else reversed(panels):
         on = length > low
@@ -79,7 +88,7 @@ def march(
             end = np.minimum(np.maximum(end, low), high)
             begin = np.full_like(end, low)
             panel = rod.panel(*((begin, end) if from_clamp else (end, begin)))
-        new = _step(panel, some, force if everywhere else force[on], trail)
+        new = _step(panel, some, pull if everywhere else take(pull, on), trail)
         if everywhere:
             here = new
         else:
@@ -88,15 +97,49 @@ def march(
 
 
 def back_to_clamp(
-    rod: RodProperties, theta: Floats, m: Floats, force: Floats, length: Floats, finer: int = 1
+    rod: RodProperties,
+    theta: Floats,
+    m: Floats,
+    force: Floats,
+    length: Floats,
+    direction: Floats | float = 0.0,
 ) -> Start:
-    """As `span.back_to_clamp`, of a vibrissa that varies."""
-    given = np.broadcast_arrays(theta, m, force, length)
+    """As `span.back_to_clamp`, of a vibrissa that varies or is heavy."""
+    given = np.broadcast_arrays(theta, m, force, length, direction)
     shape = given[0].shape
-    end = march(rod, *(np.array(values, dtype=float).ravel() for values in given), finer=finer)
+    *ends, direction = (np.array(values, dtype=float).ravel() for values in given)
+    end = march(rod, *ends, direction=direction)
     theta, m, along, across, amplitude = (values.reshape(shape) for values in end)
     chi = np.pi / 4 - theta / 2
     return Start(np.sin(chi), np.cos(chi), m, along, across, np.abs(amplitude))
+
+
+class _Pull(NamedTuple):
+    """What bends n spans: a force, and along and across it the weight by length; shape (n,)."""
+
+    force: Floats
+    normal: Floats
+    along: Floats
+    heavy: bool
+
+    @classmethod
+    def of(cls, rod: RodProperties, force: Floats, direction: Floats) -> "_Pull":
+        w_x, w_y = rod.weight
+        sin, cos = np.sin(direction), np.cos(direction)
+        across, along = w_x * sin - w_y * cos, w_x * cos + w_y * sin
+        force, across, along = np.broadcast_arrays(force, across, along)
+        return cls(force, across, along, any(rod.weight))
+
+    @property
+    def largest(self) -> Floats:
+        """No less than the force anywhere."""
+        return self.force + np.hypot(self.normal, self.along) if self.heavy else self.force
+
+    def at(self, s: Floats, theta: Floats) -> Floats:
+        """The derivative of the moment at places."""
+        beyond = 1 - s
+        level = (self.force + beyond * self.normal) * np.cos(theta)
+        return np.asarray(level + beyond * self.along * np.sin(theta))
 
 
 def _panels(rod: RodProperties, force: Floats, length: Floats, finer: int) -> Floats:
@@ -116,17 +159,24 @@ def _panels(rod: RodProperties, force: Floats, length: Floats, finer: int) -> Fl
     return np.append(inner, ends[-1])
 
 
-def _step(panel: Panel, here: SpanEnd, force: Floats, trail: list[Trail] | None) -> SpanEnd:
+def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -> SpanEnd:
     """March from one end of a panel to the other."""
+    force = pull.force
     # By the natural curvature and the moment at the beginning; the force turns it further.
     reached = turned = here.theta + (panel.rest + panel.bend * here.m)
-    for _ in range(_iterations(float(panel.give.max() * force.max())) + 1):
+    for _ in range(_iterations(float(panel.give.max() * pull.largest.max())) + 1):
         theta = reached[:-1]
         cos = np.cos(theta)
-        reached = turned + force * panel.turned(cos)
+        if pull.heavy:
+            reached = turned + panel.turned(pull.at(panel.s, theta))
+        else:
+            reached = turned + force * panel.turned(cos)
     change = np.abs(reached[:-1] - theta).max(axis=0)
     last = np.where(change > _LOST, np.nan, reached[-1])
-    moment = here.m + panel.length * force * WEIGHTS.dot(cos)
+    if pull.heavy:
+        moment = here.m + panel.length * WEIGHTS.dot(pull.at(panel.s, theta))
+    else:
+        moment = here.m + panel.length * force * WEIGHTS.dot(cos)
     sin, size = np.sin(theta), np.abs(panel.length)
     if trail is not None:
         trail.append(

@@ -9,7 +9,8 @@ the angle from its surface to its axis: w is phi1 - alpha less that, in Phase B 
 and that, and the other side begins twice that earlier. With the normal force f, Coulomb friction
 mu and slope angle alpha of the contour the force on the vibrissa is F = f sqrt(1 + mu^2) at the
 slope angle phi_F = alpha + arctan(mu): a dead force again. It acts on the surface, so that the
-couple -mu r f remains at the contact.
+couple -mu r f remains at the contact. Of a heavy vibrissa the end beyond a contact of Phase B hangs
+(`analytic.problem.hanging`), and its moment remains there, too.
 """
 
 from typing import NamedTuple
@@ -21,17 +22,20 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.hanging import AtRest, Hung, at_rest, hang
 from analytic.problem.poses import Pose, Poses
+from analytic.problem.rod import RodProperties
 from analytic.problem.support import Support
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
-from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.span import Start, back_to_clamp
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
 _DIFFERENCE = 1e-5  # of a force and an excess of their size: truncation and round-off are alike
 _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
+_ASIDE = 1e-5  # rad; to both sides, by which a heavy vibrissa is turned with its contact
+_BOTH_SIDES = np.array([[1.0], [-1.0]])
 INSIDE = -5e-324
 """An excess of nothing, in Phase B."""
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
@@ -46,7 +50,8 @@ class Vibrissa(NamedTuple):
     # coefficient, or one a state; positive where the object pushes the vibrissa to the right.
     friction: float | Floats = 0.0
     radius: float | Floats = 0.0  # at the tip, or one a state [L]
-    # what varies along the vibrissa, if anything does; the natural curvature is then its.
+    # what varies along the vibrissa, or its weight, if there is any; the natural curvature is then
+    # its.
     rod: RodProperties | None = None
     # by which its clamp leans to the left of the upright, or one a state [rad].
     clamp_angle: float | Floats = 0.0
@@ -60,7 +65,7 @@ class Vibrissa(NamedTuple):
             beam.moment_unit / held.clamp_stiffness,
             held.friction,
             rest.tip_radius,
-            RodProperties.of(beam, rest) if beam.varies else None,
+            RodProperties.of(beam, rest, held.weight) if beam.varies or any(held.weight) else None,
             held.clamp_angle,
         )
 
@@ -76,15 +81,41 @@ class Vibrissa(NamedTuple):
         return self.rod is None and held and not np.any(self.friction)
 
     @property
+    def weight(self) -> tuple[float, float]:
+        """Along x and y, by length."""
+        return (0.0, 0.0) if self.rod is None else self.rod.weight
+
+    @property
+    def at_rest(self) -> AtRest:
+        """The vibrissa that touches nothing, under its weight."""
+        if self.rod is None or not any(self.weight):
+            return AtRest(self.unloaded, 0.0, stands=True)
+        return at_rest(self.rod, self.compliance)
+
+    def hung(self, slope: Floats, s: Floats) -> Hung | None:
+        """Its ends beyond places of some slope, shape (n,), if it has a weight."""
+        return hang(self.rod, slope, s) if self.rod is not None and any(self.weight) else None
+
+    def moment_beyond(self, slope: Floats, s: Floats) -> Floats | None:
+        """That of the end beyond places of some slope, if it has a weight."""
+        if self.rod is None or not any(self.weight):
+            return None
+        slope, s = np.broadcast_arrays(slope, s)
+        found, held = np.zeros(s.shape), np.isfinite(slope) & (s < 1)
+        if held.any():
+            found[held] = hang(self.rod, slope[held], s[held]).base
+        return found
+
+    @property
     def unloaded(self) -> Unloaded:
-        """Its shape and radius at rest."""
+        """Its shape and radius without weight."""
         if self.rod is not None:
             return self.rod.unloaded
         radius = float(self.radius)
         return Unloaded(self.natural_curvature, radius, radius, float(self.clamp_angle))
 
     def turn_after(self, s: Floats) -> Floats | float:
-        """By how much it turns at rest on the way from a place to its tip [rad]."""
+        """By how much it turns without weight on the way from a place to its tip [rad]."""
         if self.rod is not None:
             return self.rod.unloaded.turn_between(s, 1.0)
         return self.natural_curvature * (1 - s) if self.natural_curvature else 0.0
@@ -134,11 +165,13 @@ class Vibrissa(NamedTuple):
         """Slope angle of its surface at the contact, from the contour's [rad]."""
         return np.asarray(np.clip(excess, 0.0, self.most_turned))
 
-    def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
+    def back_to_clamp(
+        self, slope: Floats, couple: Floats, force: Floats, length: Floats, direction: Floats
+    ) -> Start:
         """March from the contact back to the clamp."""
         if self.rod is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
-        return march.back_to_clamp(self.rod, slope, -couple, force, length)
+        return march.back_to_clamp(self.rod, slope, -couple, force, length, direction)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
@@ -188,6 +221,23 @@ class States(NamedTuple):
         return leant + lean if lean else leant
 
     @property
+    def last_angle(self) -> Floats:
+        """Slope angle of the tip, which is the contact or beyond it [rad]."""
+        hung = self.vibrissa.hung(self.tip_angle, self.arc_length)
+        if hung is not None:
+            return hung.slope[:, -1]
+        return np.asarray(self.tip_angle + self.vibrissa.turn_after(self.arc_length))
+
+    @property
+    def end_curvature(self) -> Floats:
+        """Curvature just beyond the contact, positive to the left."""
+        slope, s, vibrissa = self.tip_angle, self.arc_length, self.vibrissa
+        natural, beyond = vibrissa.unloaded.curvature(s), vibrissa.moment_beyond(slope, s)
+        if beyond is None or vibrissa.rod is None:
+            return natural
+        return np.asarray(natural + beyond * vibrissa.rod.flexibility(s))
+
+    @property
     def couple(self) -> Floats:
         """Couple of the friction on the surface about the axis."""
         return self.vibrissa.friction * self.vibrissa.radius_at(self.arc_length) * self.force
@@ -231,8 +281,13 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     length = vibrissa.arc_length(excess)
     couple = mu * vibrissa.radius_at(length) * force
     slope = vibrissa.turned(excess) + (vibrissa.lean - lean)
-    start = vibrissa.back_to_clamp(slope, couple, push, length)
-    moment = couple + push * start.along
+    beyond = vibrissa.moment_beyond(slope + direction, length)
+    if beyond is None:
+        start = vibrissa.back_to_clamp(slope, couple, push, length, direction)
+        moment = couple + push * start.along
+    else:
+        start = vibrissa.back_to_clamp(slope, couple - beyond, push, length, direction)
+        moment = -start.kappa
     sin, cos = np.sin(direction), np.cos(direction)
     sin_half, cos_half = np.sin(direction / 2), np.cos(direction / 2)
     turned = np.arctan2(
@@ -274,6 +329,7 @@ def with_rates(
 
     The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
     and one-sided at a contour's breaks; the other two are differences that do not change the phase.
+    Of a heavy vibrissa the first one has a difference, too, of the contact that turns where it is.
     """
     step_f = _DIFFERENCE * np.maximum(vibrissa.least_force, force)
     most = vibrissa.most_turned
@@ -289,10 +345,16 @@ def with_rates(
     here = States(point, force, excess, moment, up, reach, angle, amplitude, vibrissa)
     stretch = here.offset_point.stretch
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
+    by_alpha = 1.0, here.reach, here.up
+    if any(vibrissa.weight):
+        aside = point._replace(alpha=point.alpha + _ASIDE * _BOTH_SIDES)
+        there = states(aside, force, excess, vibrissa)
+        of_end = there.angle, there.up, -there.reach
+        by_alpha = tuple((right - left) / (2 * _ASIDE) for right, left in of_end)
     by_t = (
-        point.turning,
-        point.turning * here.reach - stretch * sin,
-        stretch * cos + point.turning * here.up,
+        point.turning * by_alpha[0],
+        point.turning * by_alpha[1] - stretch * sin,
+        stretch * cos + point.turning * by_alpha[2],
     )
     up, reach = found.up, found.reach
     if vibrissa.rod is not None:  # where a cone is touched decides how thick it is

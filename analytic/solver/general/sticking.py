@@ -11,9 +11,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from analytic.numerics.newton import Jacobian, Misses, solve
+from analytic.numerics.panel import POINTS, WEIGHTS
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.panel import POINTS, WEIGHTS
 from analytic.solver.general.states import States, Vibrissa, states_at
 
 _FIRST, _LARGEST, _SMALLEST = 1e-3, 0.02, 1e-9  # L; steps of the foot

@@ -9,7 +9,7 @@ from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Pose, Poses
-from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns, without
+from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.path import EVENTS, follow, located
 from analytic.solver.general.states import States, Vibrissa, states_at, with_rates
@@ -34,8 +34,8 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
     beam, vibrissa, contour, poses = case.beam, Vibrissa.of_case(case), case.centreline, case.poses
     p = case.way if way is None else way
     pose = poses.at(p)
-    rest_angle = float(vibrissa.unloaded.at(np.array(1.0))[2]) - vibrissa.clamp_angle
-    columns = unloaded_columns(pose.foot_x * beam.length, rest_angle + pose.angle)
+    columns = columns_at_rest(vibrissa, pose.foot_x * beam.length, Units.of(beam))
+    columns["tip_angle"] = columns["tip_angle"] - vibrissa.clamp_angle + pose.angle
     if case.touch is None:
         none = np.zeros(len(p), dtype=bool)
         return Solved(columns, dict.fromkeys(EVENTS), none, np.empty((0, 3)))

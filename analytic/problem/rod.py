@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from analytic.numerics.panel import NODES, POINTS, TO_SERIES, WEIGHTS, Panel
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.unloaded import Unloaded
-from analytic.solver.general.panel import NODES, POINTS, TO_SERIES, WEIGHTS, Panel
 
 _TAIL = 2  # coefficients
 _EXACT = 1e-8  # of a panel's largest value; of the integral over it then the square
@@ -29,14 +29,18 @@ class RodProperties:
     rigidity: Along | float
     # Exponent of the rigidity: 1, or less on the way from the uniform vibrissa to this one.
     share: float = 1.0
+    weight: tuple[float, float] = (0.0, 0.0)  # along x and y, by length [EI(0)/L^3]
 
     @classmethod
-    def of(cls, beam: Beam, rest: Unloaded) -> "RodProperties":
-        """What varies along a beam of a shape at rest."""
-        rigidity = beam.flexural_rigidity
-        if isinstance(rigidity, Along):
-            return cls(rest, rigidity.times(1 / beam.base_rigidity, 1 / beam.length))
-        return cls(rest, rest.tip_radius / rest.base_radius if rest.base_radius else 1.0)
+    def of(
+        cls, beam: Beam, rest: Unloaded, weight: tuple[float, float] = (0.0, 0.0)
+    ) -> "RodProperties":
+        """What varies along a beam of a shape at rest, and its weight."""
+        w_x, w_y = (w * beam.length / beam.force_unit for w in weight)
+        rigidity: Along | float = rest.tip_radius / rest.base_radius if rest.base_radius else 1.0
+        if isinstance(beam.flexural_rigidity, Along):
+            rigidity = beam.flexural_rigidity.times(1 / beam.base_rigidity, 1 / beam.length)
+        return cls(rest, rigidity, weight=(w_x, w_y))
 
     def scaled(self, share: float) -> "RodProperties":
         """The form a part of the way from the uniform, straight vibrissa to this one."""
@@ -45,7 +49,9 @@ class RodProperties:
         less = natural.times(share) if isinstance(natural, Along) else natural * share
         base = rest.tip_radius + share * (rest.base_radius - rest.tip_radius)
         less_leant = replace(rest, natural=less, base_radius=base, angle=share * rest.angle)
-        return replace(self, unloaded=less_leant, share=share)
+        w_x, w_y = self.weight
+        less_heavy = share * w_x, share * w_y
+        return replace(self, unloaded=less_leant, share=share, weight=less_heavy)
 
     def flexibility(self, s: Floats) -> Floats:
         """EI(0)/EI(s)."""
