@@ -107,11 +107,11 @@ def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[s
 
 
 def _too_coarse(model: SpaceModel, row: dict[str, Any]) -> bool:
-    """Whether a joint bends much, or the contact is in the first cell from the clamp."""
+    """Whether a joint bends much, or the contact is too near the clamp."""
     layout = model.layout
     softness = float(layout.compliances[int(layout.clamp_turns)])
     bend = softness * float(np.linalg.norm([row[name] for name in MOMENT]))
-    return bend > MOST_BENT or row["contact_arc_length"] < layout.first_cell
+    return bend > MOST_BENT or row["contact_arc_length"] < layout.too_near
 
 
 def _rest(model: SpaceModel, found: Settled) -> float:

@@ -93,12 +93,15 @@ class Walk(Generic[Model]):
         first = int(layout.clamp_turns)
         bend = np.abs(self._state.angles[first:]).max()
         if bend > MOST_BENT:
-            times = 2 ** math.ceil(math.log2(2 * bend / MOST_BENT))
+            times = _times(2 * bend / MOST_BENT)
             return f"a joint bends by over {MOST_BENT:g} rad: {times} times the segments would do"
         begin = float(layout.joints[first])
         nearest = contacts.arc_length[contacts.loaded].min(initial=1.0)
-        if nearest < layout.first_cell:
-            return "the contact is in the first cell from the clamp, which is too coarse"
+        if nearest < layout.too_near:
+            return (
+                f"the contact is within {layout.too_near:.2g} L of the clamp, too few segments: "
+                f"{_times(layout.too_near / nearest)} times as many would do"
+            )
         rigid = layout.vibrissa.at(np.linspace(0, begin, _PLACES))
         rigid = np.column_stack(model.pose.place(*rigid.T))
         deep = float(model.lookout.radii[0]) - _OVERLOOKED
@@ -326,3 +329,8 @@ class Walk(Generic[Model]):
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(model.pose, row["discrepancy"], _DISCREPANCY)
         return row
+
+
+def _times(share: float) -> int:
+    """The power of two that is as much: few different ones, so that reasons can be counted."""
+    return int(2 ** math.ceil(math.log2(share)))

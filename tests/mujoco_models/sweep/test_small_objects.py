@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from analytic import Beam, Case, Sweep, circle, ellipse, named_case, solve_sweep
-from mujoco_models import Settings, simulate_sweep
+from analytic import CLAMP_READINGS, Beam, Case, Sweep, circle, ellipse, named_case, solve_sweep
+from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.chain import Chain
 from mujoco_models.model.model import BeamModel
 from mujoco_models.sweep.numerics import Numerics
@@ -153,3 +153,21 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(tm
     assert (found.table["status"] == "unsettled").sum() > 50
     assert any("so soft" in reason for reason in found.provenance["unsettled"])
     assert len(evaluated) < 10_000  # observed 2,900
+
+
+@pytest.mark.parametrize("beam", available_beams())
+def test_contacts_on_few_segments_say_how_many_would_do(beam):
+    """What stays "ok" past a circle by the clamp is right to 7 % of the largest; all else is not."""
+    case = Case(Beam(radius=0.005), circle(0.05, (0.0, 0.06)), Sweep(60))
+    found, exact = simulate_sweep(case, Settings(beam=beam, segments=20)), solve_sweep(case)
+    near = (found.values("contact_arc_length") < 0.13).nonzero()[0]
+    assert len(near) > 1
+    assert (found.table["status"][near] == "unsettled").all()
+    assert any("times as many would do" in reason for reason in found.provenance["unsettled"])
+    ok = (found.table["status"] == "ok") & (found.table["phase"] == exact.table["phase"])
+    off = [
+        np.abs(found.values(name) - exact.values(name)) / np.abs(exact.values(name)).max()
+        for name in CLAMP_READINGS
+    ]
+    assert np.max(off, axis=0)[ok].max() < 0.07
+    assert np.max(off, axis=0)[near].max() > 0.1
