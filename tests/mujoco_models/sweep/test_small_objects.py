@@ -157,7 +157,7 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(tm
 
 @pytest.mark.parametrize("beam", available_beams())
 def test_contacts_on_few_segments_say_how_many_would_do(beam):
-    """What stays "ok" past a circle by the clamp is right to 7 % of the largest; all else is not."""
+    """What is "ok" past a circle by the clamp is right to 7 % of the largest, all else is not."""
     case = Case(Beam(radius=0.005), circle(0.05, (0.0, 0.06)), Sweep(60))
     found, exact = simulate_sweep(case, Settings(beam=beam, segments=20)), solve_sweep(case)
     near = (found.values("contact_arc_length") < 0.13).nonzero()[0]
