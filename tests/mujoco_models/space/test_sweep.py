@@ -232,7 +232,9 @@ def test_a_divergence_names_its_station_and_keeps_the_others(monkeypatch):
             data.qfrc_passive[2] = np.nan
 
     monkeypatch.setattr(mujoco, "mj_forward", broken)
-    with pytest.raises(DivergedError, match=r"diverged at station 7 of 20, travel = .*foot_z = .*: "):
+    with pytest.raises(
+        DivergedError, match=r"diverged at station 7 of 20, travel = .*foot_z = .*: "
+    ):
         simulate_space(case_of("sphere", 20), SpatialSettings(segments=8), keep=kept.append)
     assert kept[0].table["status"].tolist() == ["ok"] * 6 + ["diverged"]
     assert np.isnan(kept[0].values(*FORCE)[-1]).all()
