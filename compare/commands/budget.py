@@ -108,15 +108,14 @@ def _print(job: Job, *summary: Any) -> None:  # noqa: ANN401
 
 def _advised(advice: Followed) -> list[str]:
     """The advised settings, with what was predicted and measured of them."""
-    settings, predicted = advice.predicted.settings, advice.predicted
+    settings, took = advice.settings, 1e3 * advice.seconds_a_station
     mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
     said = [
-        f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
-        f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
+        f"Coarsest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
+        f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}.",
+        f"  predicted: {advice.predicted:.1e} rms",
+        f"  measured: {advice.error:.1e} rms, {took:.1f} ms a station",
     ]
-    for what, one in (("predicted", predicted), ("measured", advice)):
-        took = 1e3 * one.seconds_a_station
-        said.append(f"  {what}: {one.error:.1e} rms, {took:.1f} ms a station")
     if not advice.reached:
         said.append("  The target was missed: ask for a little less.")
     return said

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from analytic.problem.errors import InputError
-from compare.commands.options import AGREES, CaseName, flag, option, words
+from compare.commands.options import AGREES, CaseName, flag, option, require_fraction, words
 from compare.commands.output import output_folder, waiting
 from mujoco_models.allowed import BeamKind
 
@@ -53,8 +53,7 @@ def export(
     """
     if out.suffix not in (".xml", ".urdf"):
         raise InputError("--out", out, "named *.xml or *.urdf", "rename it")
-    if not 0 < error < 1:
-        raise InputError("--error", error, "between 0 and 1", "0.01 is usual")
+    require_fraction("--error", error, "0.01")
     with waiting("loading"):
         from compare.commands import terminal
         from compare.read.case import load_job

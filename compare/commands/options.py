@@ -172,6 +172,12 @@ def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
     return number
 
 
+def require_fraction(option: str, value: float, usual: str) -> None:
+    """Refuse an error that is no fraction of a reading's magnitude."""
+    if not 0 < value < 1:
+        raise InputError(option, value, "between 0 and 1", f"{usual} is usual")
+
+
 def words(text: str) -> list[str]:
     """The words between the commas of an option."""
     return [word.strip() for word in text.split(",")]

@@ -29,6 +29,7 @@ from compare.commands.options import (
     Timestep,
     flag,
     option,
+    require_fraction,
 )
 from compare.commands.output import output_folder, waiting
 from compare.read.kinds import PLANE, SPACE
@@ -60,7 +61,7 @@ def run(
     ] = False,
     target: Annotated[
         float | None,
-        option("Find the cheapest settings, or the fastest motion, with at most this rms.", "RMS"),
+        option("Find the coarsest settings, or the fastest motion, with at most this rms.", "RMS"),
         For(IN_THE_PLANE, (WITH_MUJOCO, "--budget")),
     ] = None,
     film: Annotated[
@@ -100,9 +101,7 @@ def run(
     if kind != PLANE and loaded.engines not in ((), _OURS):
         raise InputError("engine", ", ".join(loaded.engines), "exact or mujoco", f"this is {kind}")
     if target is not None:
-        from compare.explain.advice import check_target
-
-        check_target(target)
+        require_fraction("--target", target, "1e-3")
     job = changes.made(loaded)
     with output_folder(changes.folder(out, job.case.name)) as folder:
         with waiting("loading"):

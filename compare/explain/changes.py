@@ -8,7 +8,6 @@ from mujoco_models.settings import Settings
 STIFFER = 10  # times the contact stiffness
 SHARPER = 10  # times less of the corners' radius
 CALMER = 100  # times less out of balance
-COARSER = 4  # times fewer points of the mesh; for advice only
 _AT_REST = 1e-8  # EI/L; what all the other sweeps are out of balance by at most
 
 
@@ -49,8 +48,3 @@ def controlled_changes(
         "two": replace(stiff, segments=2 * n),
         "four": replace(stiff, segments=4 * n),
     }
-
-
-def coarser_mesh(settings: Settings) -> Settings:
-    """The base on a coarser mesh: shows how its facets' part falls with their number."""
-    return replace(settings, contour_points=max(8, settings.contour_points // COARSER))

@@ -1,0 +1,59 @@
+"""Settings for a wanted error, from parts that are known."""
+
+import math
+from dataclasses import asdict
+from types import SimpleNamespace
+
+import pytest
+
+from analytic import CLAMP_READINGS, InputError
+from compare.explain.parts import Part
+from compare.simulate.target import advised
+from mujoco_models import Settings
+
+BASE = Settings(segments=40, contour_points=1000, contact_stiffness=1e6)
+
+
+def chosen(target, smooth="primitive", **sizes):
+    """What is advised where each part has that size in the worst of the readings."""
+    zero = dict.fromkeys(("discretisation", "facets", "softness", "unexplained"), 0.0)
+    worst = dict(zip(CLAMP_READINGS, (1.0, 0.5, 0.2), strict=True))
+    parts = {
+        name: {reading: Part(size * share, 0.0) for reading, share in worst.items()}
+        for name, size in (zero | sizes).items()
+    }
+    swept = {"base": asdict(BASE), "smooth": asdict(BASE) | {"obstacle": smooth}}
+    runs = {name: SimpleNamespace(provenance={"settings": of}) for name, of in swept.items()}
+    return advised(SimpleNamespace(parts=parts, order=2.0), runs, target)
+
+
+@pytest.mark.parametrize("target", [1e-3, 4e-3, 2e-2])
+def test_the_beam_alone_follows_its_order(target):
+    settings, error = chosen(target, discretisation=4e-3)
+    assert settings.segments == math.ceil(40 * math.sqrt(4e-3 / (0.9 * target * math.sqrt(0.8))))
+    assert error == pytest.approx(4e-3 * (40 / settings.segments) ** 2)
+    assert error <= 0.9 * target
+
+
+def test_facets_fall_slowly_and_grow_fast():
+    """As their normals where there are to be more, as their chords where fewer."""
+    share = 0.9e-3 * math.sqrt(0.2)
+    assert chosen(1e-3, facets=4 * share)[0].contour_points == 4000
+    assert chosen(1e-3, facets=share / 4)[0].contour_points == 500
+
+
+def test_where_facets_are_not_known_they_stay():
+    assert chosen(1e-3, smooth="mesh", facets=1e-5)[0].contour_points == BASE.contour_points
+
+
+def test_contacts_become_as_stiff_as_they_must():
+    settings, error = chosen(1e-3, softness=6e-4)
+    assert settings.contact_stiffness == pytest.approx(2e6)
+    assert error == pytest.approx(3e-4)
+    assert chosen(1e-3, softness=2e-4)[0].contact_stiffness == BASE.contact_stiffness
+
+
+@pytest.mark.parametrize("part", ["unexplained", "corner"])
+def test_what_nothing_lowers_is_the_least(part):
+    with pytest.raises(InputError, match=r"must be at least"):
+        chosen(1e-3, **{part: 2e-3})
