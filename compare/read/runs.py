@@ -95,12 +95,6 @@ class RunRecord(BaseModel):
         seconds = self.provenance.get("seconds")
         return None if seconds is None else seconds / self.stations
 
-    def part(self, name: str) -> float | None:
-        """The largest of the three readings' rms of a part of the budget."""
-        if self.budget is None or name not in self.budget.parts:
-            return None
-        return max((part.rms for part in self.budget.parts[name].values()), default=None)
-
 
 @dataclass(frozen=True)
 class EngineOutcome:

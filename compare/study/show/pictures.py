@@ -14,32 +14,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
-from compare.study.show.results import WORST, Question, StudyResults, together
+from compare.study.show.results import AXES, WORST, Question, StudyResults, together
 from compare.study.show.slices import Line, lines, plane, words
 from compare.study.show.tables import pareto_front
 
 Drawings: TypeAlias = dict[str, Callable[[], Figure]]
 """Figures to draw, by what they show."""
 
-_AXES = {
-    "mujoco.segments": "segments $N$",
-    "mujoco.contour_points": "contour points of the mesh",
-    "mujoco.contact_stiffness": "contact stiffness / ($EI/L^3$)",
-    "sweep.stations": "stations of the sweep",
-    "beam.radius": "radius of the vibrissa [length]",
-    "beam.tip_radius": "radius at the tip [length]",
-    "beam.natural_curvature": "natural curvature [1/length]",
-    "support.rotational_stiffness": "rotational stiffness of the clamp [moment/rad]",
-    "contact.friction": r"friction coefficient $\mu$",
-    "noise.relative": "noise / largest magnitude",
-    "path.height": "height of the foot's plane [length]",
-    "path.turn": "direction of the way [degrees]",
-    "path.tangent.x": "lean of the clamp in $x$",
-    "path.tangent.z": "lean of the clamp in $z$",
-    "path.stations": "stations of the sweep",
-    "profile.a": "$a$ of the object [1/length]",
-    "profile.c": "$c$ of the object [length]",
-}
 _MARKED = 25  # points of a line up to which each is marked
 _MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
@@ -202,4 +183,4 @@ def _spans_decades(values: pd.Series) -> bool:
 
 
 def _label(axis: str) -> str:
-    return _AXES.get(axis, label(axis))
+    return AXES.get(axis, label(axis))

@@ -1,8 +1,10 @@
 """What is stored of a study, as its report looks at it, and the questions that it answers."""
 
 import re
+import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas as pd
 
@@ -84,32 +86,10 @@ class Question:
     least: float = 0.0  # pictures draw what is less at this: nobody can see the difference
 
 
-QUESTIONS = (
-    Question(
-        "disagreement", "How far are the two models apart?", WORST,
-        "the worst reading's disagreement", "worst reading's rms\n/ largest magnitude",
-    ),
-    Question(
-        "snap-off", "How far is the snap-off shifted?", "snap_off_difference",
-        "the shift of the snap-off", "shift of the snap-off [length]",
-    ),
-    Question(
-        "slip-off", "How far is the slip-off shifted?", "slip_off_difference",
-        "the shift of the slip-off", "shift of the slip-off [length]",
-    ),
-    Question(
-        "leaving", "Where does the vibrissa slip off?", "event_slip_off",
-        "the foot's way to the slip-off", "way to the slip-off [length]",
-    ),
-    Question(
-        "reconstruction", "How well is the object reconstructed?", "reconstruction_rms",
-        "the rms reconstruction error", "rms reconstruction error / $L$", least=1e-6,
-    ),
-    Question(
-        "phase-b", "Where is there a Phase B?", "contact_length_minimum",
-        "the least contact length", "least contact length / $L$", limit=1.0,
-    ),
-)  # fmt: skip
+_WORDS = tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8"))
+QUESTIONS = tuple(Question(**one) for one in _WORDS["question"])
+AXES: dict[str, str] = _WORDS["axes"]
+"""What pictures call an axis."""
 
 
 def asked(found: StudyResults) -> list[Question]:
