@@ -12,8 +12,7 @@ from compare.explain.changes import controlled_changes
 from compare.explain.motion import MotionBudget
 from compare.explain.split_space import Parts, split_space
 from compare.explain.variations import on_polygon, variations
-from compare.simulate.dispatch import softened
-from compare.simulate.moving import budget_in_motion, budget_of_model
+from compare.simulate.moving import budget_in_motion
 from compare.simulate.workers import SWEEPERS, running
 from mujoco_models import simulate_space, simulate_sweep
 from mujoco_models.motion import Motion
@@ -94,9 +93,7 @@ def measure_budget(
     planar = require("settings", chosen, Settings, _REMEDY)
     if motion is None:
         return budget_at_rest(case, planar, advance)
-    if model is not None:
-        return budget_of_model(case, model, motion, planar, advance)
-    return budget_in_motion(case, motion, planar, softened(planar, motion), advance)
+    return budget_in_motion(case, motion, planar, model, advance)
 
 
 _REMEDY = "take Settings in the plane, SpatialSettings in space"

@@ -13,7 +13,7 @@ from compare.explain.motion import (
     slower_and_finer,
     slower_and_finer_of_model,
 )
-from compare.simulate.dispatch import simulate
+from compare.simulate.dispatch import simulate, softened
 from compare.simulate.inspection import measured_beam
 from compare.simulate.means import sweep_as_means
 from compare.simulate.rigidity import by_its_clamp
@@ -31,45 +31,36 @@ def budget_in_motion(
     case: Case,
     motion: Motion,
     settings: Settings,
-    at_rest: Settings,
+    model: OwnModel | None = None,
     advance: Callable[[], None] = lambda: None,
 ) -> tuple[MotionBudget, Mapping[str, Readings]]:
-    """The budget of a sweep in motion, and its sweeps."""
-    motions = slower_and_finer(motion)
-    sweeps = {name: (simulate, case, settings, one) for name, one in motions.items()}
-    runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
-    left_out = tuple(name for name in motions if name not in runs)
-    return replace(motion_budget(solve_sweep(case), runs), left_out=left_out), runs
+    """The budget of a sweep in motion, and its sweeps.
 
-
-def budget_of_model(
-    case: Case,
-    model: OwnModel,
-    motion: Motion,
-    settings: Settings,
-    advance: Callable[[], None] = lambda: None,
-) -> tuple[MotionBudget, Mapping[str, Readings]]:
-    """The same of a user's own model; nothing of its files is changed.
-
-    ``at rest`` is of our chain with as many links. ``beam`` is the closed form of the vibrissa that
-    was measured less that of the one that is stated.
+    Of a user's own model, nothing of whose files is changed, ``at rest`` is of our chain with as
+    many links, and ``beam`` is the closed form of the vibrissa that was measured less that of the
+    one that is stated.
     """
-    found = measured_beam(model)
-    # What is soft about the model's contacts is a part of its own.
-    at_rest = replace(settings, segments=max(len(found.joints), 2))
-    of_model = slower_and_finer_of_model(model, motion)
-    sweeps = {
-        name: (simulate, case, settings, moved, changed)
-        for name, (changed, moved) in of_model.items()
-    }
-    runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
-    no_ours = "ours" in sweeps and "ours" not in runs
-    if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
-        del runs["stiff"]
-    if not case.beam.varies:
-        runs["beam"] = solve_sweep(_as_measured(case, found))
-    left_out = tuple(name for name in of_model if name not in runs)
-    budget = motion_budget(solve_sweep(case), runs, of_our_chain=True)
+    sweeps: dict[str, tuple[Any, ...]]
+    if model is None:
+        resting = softened(settings, motion)
+        sweeps = {name: (one,) for name, one in slower_and_finer(motion).items()}
+    else:
+        found = measured_beam(model)
+        # What is soft about the model's contacts is a part of its own.
+        resting = replace(settings, segments=max(len(found.joints), 2))
+        of_model = slower_and_finer_of_model(model, motion)
+        sweeps = {name: (moved, changed) for name, (changed, moved) in of_model.items()}
+    tasks = {name: (simulate, case, settings, *one) for name, one in sweeps.items()}
+    rest = (sweep_as_means, case, resting, motion.average)
+    runs = _swept({**tasks, "rest": rest}, advance)
+    if model is not None:
+        no_ours = "ours" in sweeps and "ours" not in runs
+        if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
+            del runs["stiff"]
+        if not case.beam.varies:
+            runs["beam"] = solve_sweep(_as_measured(case, found))
+    left_out = tuple(name for name in sweeps if name not in runs)
+    budget = motion_budget(solve_sweep(case), runs, of_our_chain=model is not None)
     return replace(budget, left_out=left_out), runs
 
 

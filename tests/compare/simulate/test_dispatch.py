@@ -68,14 +68,13 @@ def test_each_kind_of_case_has_its_budget(monkeypatch):
     asked = []
     monkeypatch.setattr(budgets, "budget_at_rest", lambda *given: asked.append(given))
     monkeypatch.setattr(budgets, "budget_in_motion", lambda *given: asked.append(given))
-    monkeypatch.setattr(budgets, "budget_of_model", lambda *given: asked.append(given))
     motion, model = Motion(contact_stiffness=3e4), OwnModel("whisker.xml")
     measure_budget(CASE)
     measure_budget(CASE, COARSE, motion=motion)
     measure_budget(CASE, COARSE, motion=motion, model=model)
     assert asked[0][:2] == (CASE, Settings())
-    assert asked[1][:4] == (CASE, motion, COARSE, at_rest(COARSE, motion))
-    assert asked[2][:4] == (CASE, model, motion, COARSE)
+    assert asked[1][:4] == (CASE, motion, COARSE, None)
+    assert asked[2][:4] == (CASE, motion, COARSE, model)
 
 
 class Counter:
