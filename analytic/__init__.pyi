@@ -3,6 +3,8 @@ from .from_clamp.calibration.calibrate import Calibration as Calibration
 from .from_clamp.calibration.calibrate import Estimate as Estimate
 from .from_clamp.calibration.calibrate import calibrate as calibrate
 from .from_clamp.noise import relative_noise as relative_noise
+from .from_clamp.object.fit_object import FittedObject as FittedObject
+from .from_clamp.object.fit_object import fit_object as fit_object
 from .from_clamp.reconstruct import reconstruct as reconstruct
 from .from_clamp.reconstruct import reconstruct_by_decision as reconstruct_by_decision
 from .from_clamp.reconstruct import require_beam as require_beam

@@ -80,6 +80,15 @@ def reconstruct(
         ),
         For((SWEEP, ERRORS)),
     ] = None,
+    fit: Annotated[
+        str | None,
+        option(
+            "The whole object: circle, ellipse, superellipse, convex; auto: the likeliest of them. "
+            "Exit code 1 if it does not explain the readings.",
+            "FAMILY",
+        ),
+        For((SWEEP,)),
+    ] = None,
     errors: Annotated[
         bool,
         flag("--errors", "How well methods find the contacts that a model's file holds."),
@@ -107,6 +116,7 @@ def reconstruct(
     stored = [path for path in given if path.suffix.lower() in TABLES or path.is_dir()]
     found = pass_files(stored)
     swept = [] if errors else [one for one in found if _kind(one, known) == SWEEP]
+    code = AGREES
     cases = [path for path in given if path not in stored]
     rest = [path for path in (*found, *cases) if path not in swept]
     if swept:
@@ -119,9 +129,10 @@ def reconstruct(
         passes = [reconstructing.without_faults(rig.read(path), offset) for path in swept]
         place = out / "passes" if out and rest else out
         place = place or Path("results") / f"{distinct_name(given[0])}-reconstructed"
-        reconstructing.in_the_plane(passes, place, share, friction, words(method or "elastica"))
+        methods = words(method or "elastica")
+        if not reconstructing.in_the_plane(passes, place, share, friction, methods, fit):
+            code = DISAGREES
     several = distinct_names(rest) if rest else {}
-    code = AGREES
     for name, path in several.items():
         is_file = path.suffix.lower() in TABLES
         job = None if is_file else load_job(str(path))

@@ -12,6 +12,7 @@ from analytic import (
     InputError,
     Readings,
     estimate_friction,
+    fit_object,
     reconstruct,
     relative_noise,
     require_beam,
@@ -31,6 +32,7 @@ from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
+from compare.show.fitted_object import object_document, object_summary
 from compare.show.numbers import quantity
 
 
@@ -62,8 +64,12 @@ def in_the_plane(
     noise: float | None,
     friction: str | None,
     methods: list[str],
-) -> None:
-    """Find the contour by each method, from all passes, and write and print it."""
+    family: str | None,
+) -> bool:
+    """Find the contour by each method, from all passes, and write and print it.
+
+    And the object of a family, if one is named; whether it explains the readings of all passes.
+    """
     for one in as_passes(passes):
         if not one.trusted.any():
             raise InputError(
@@ -78,6 +84,8 @@ def in_the_plane(
     contacts = {name: [reconstruct(one, level, method=name) for one in passes] for name in methods}
     for found, one in zip(contacts.get("elastica", ()), passes, strict=False):
         require_beam(found, one)
+    with waiting("fitting"):
+        fitted = None if family is None else fit_object(passes, family, level)
     with output_folder(place) as folder:
         for one in passes:
             note_rows(one)
@@ -98,8 +106,14 @@ def in_the_plane(
                 points if len(passes) > 1 else points.drop(columns="pass"),
             )
             with waiting("drawing"):
-                picture = reconstruction(passes[0], points)
+                picture = reconstruction(passes[0], points, fitted)
             terminal.keep(folder / f"reconstruction{end}.png", picture)
+        if fitted is not None:
+            terminal.show(*object_summary(fitted))
+            terminal.keep(folder / "object.json", object_document(fitted))
+    if fitted is None:
+        return True
+    return fitted.explains and (fitted.passes is None or fitted.passes.consistent)
 
 
 def _points(readings: Readings, found: pd.DataFrame) -> pd.DataFrame:

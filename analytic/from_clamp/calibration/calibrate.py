@@ -2,16 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from analytic.from_clamp.calibration.fit import LeastSquaresFit
+from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
 from analytic.from_clamp.calibration.unknowns import (
     UNKNOWNS,
     Sought,
-    Unknown,
     checked_unknowns,
 )
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
@@ -28,7 +27,9 @@ from analytic.problem.shown import Shown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_DOUBLE_SIDED_95 = 1.959964
+AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
+
+DOUBLE_SIDED_95 = 1.959964
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
 _WIDEST = 0.25  # half an interval that says something, of a dimensionless number
@@ -107,7 +108,7 @@ class Calibration(Shown):
     def misfit_shows(self) -> bool:
         """Whether the fit leaves more than chance and the noise, known to a tenth, do."""
         freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
-        return bool(self.misfit > _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
+        return not explained_by_noise(self.misfit, freedom)
 
     @property
     def explains(self) -> bool:
@@ -189,13 +190,13 @@ def calibrate(
     direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
-    kinds = [UNKNOWNS[name] for name in names]
-    fit, numbers, misfit, known = fitted_to_noise(measured, case, kinds, noise is not None)
+    fit = VibrissaFit(measured, case, [UNKNOWNS[name] for name in names])
+    fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
     covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
         _check_inside(name, number, fit.sought(numbers))
-        if not _DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
+        if not DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
             raise _not_distinguished(names, covariance, i)
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass) if len(passes) > 1 else None
@@ -208,7 +209,7 @@ def calibrate(
 
     scattered = {} if alike is None else intervals(alike.scatter)
     return Calibration(
-        intervals(_DOUBLE_SIDED_95 * deviations),
+        intervals(DOUBLE_SIDED_95 * deviations),
         sought.case,
         sought.offset,
         covariance / np.outer(deviations, deviations),
@@ -221,28 +222,28 @@ def calibrate(
     )
 
 
-def fitted_to_noise(
-    measured: Measured, case: Case, kinds: Sequence[Unknown], stated: bool
-) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
+def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
-    fit, numbers, cost = _fitted(measured, case, kinds)
-    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(kinds))))
+    fit, numbers, cost = _fitted(fit)
+    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(fit.kinds))))
     jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
     if jittered is not None:
-        fit = LeastSquaresFit(jittered, case, kinds)
+        fit = fit.of(jittered)
         numbers, cost = fit.best_from(numbers)
     numbers, known = _knowing_the_noise(fit, numbers, 1.0 if stated and not jittered else 0.0)
     return fit, numbers, misfit, known
 
 
-def _fitted(
-    measured: Measured, case: Case, kinds: Sequence[Unknown]
-) -> tuple[LeastSquaresFit, Floats, float]:
+def explained_by_noise(misfit: float, freedom: int) -> bool:
+    """Whether what is left is no more than chance and the noise, known to a tenth, make of it."""
+    return bool(misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
+
+
+def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
     """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
-    every = len(measured.foot_x)
-    fit = LeastSquaresFit(measured, case, kinds)
+    every = len(fit.measured.foot_x)
     thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long
-    coarse = fit if thinned.all() else LeastSquaresFit(measured.at(thinned), case, kinds)
+    coarse = fit if thinned.all() else fit.of(fit.measured.at(thinned))
     numbers, cost = _best(coarse)
     if coarse is not fit:
         numbers, cost = fit.best_from(numbers)
@@ -258,7 +259,7 @@ def _fitted(
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
-        fit = LeastSquaresFit(fit.measured.at(there), case, kinds)
+        fit = fit.of(fit.measured.at(there))
         numbers, cost = fit.best_from(_inside(fit, numbers))
     return fit, numbers, cost
 
@@ -317,14 +318,15 @@ def _knowing_the_noise(
         for kind, column in zip(fit.kinds, jacobian.T, strict=True):
             if not column.any():
                 allowed = "something that the readings depend on"
-                raise InputError(
-                    "unknowns", kind.said or kind.name or "offset", allowed, "leave it out"
-                )
+                raise InputError("unknowns", kind.called, allowed, "leave it out")
         by_number = jacobian.reshape(-1, len(zero), len(numbers))
         left = -fit.misses(numbers).reshape(-1, len(zero))
         found = estimate(left, by_number, nuisances, uncertain, least, rows=measured.rows)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
-        numbers = _inside(fit, numbers + found.numbers)
+        moved = _inside(fit, numbers + found.numbers)
+        if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined
+            break
+        numbers = moved
     return numbers, replace(found, by_pass=by_pass)
 
 
@@ -354,7 +356,7 @@ def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -
     return InputError("unknowns", both, allowed, remedy)
 
 
-def _interval(fit: LeastSquaresFit, numbers: Floats, i: int, half: float) -> Estimate:
+def _interval(fit: VibrissaFit, numbers: Floats, i: int, half: float) -> Estimate:
     kind = fit.kinds[i]
     ends = []
     for number in (numbers[i] - half, numbers[i] + half):

@@ -1,15 +1,17 @@
 """Least squares: the numbers with which the closed form comes nearest to a sweep's readings."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
-from typing import get_args
+from typing import Self, get_args
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import Sought, Unknown
+from analytic.from_clamp.calibration.unknowns import Number, Sought, Unknown
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
@@ -21,18 +23,19 @@ _AN_END = 1e-9  # a fit that stays inside comes so near to an end that is best
 _MOST_SWEEPS = 40  # of a fit, without those for derivatives
 
 
-class LeastSquaresFit:
-    """The sum of squares over some unknowns, each station weighed by its noise.
+class LeastSquaresFit(ABC):
+    """The sum of squares over some numbers, each station weighed by its noise.
 
     Noise of the foot position moves all three readings of its station along their slopes over the
     foot position; both enter the station's covariance.
     """
 
-    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
+    start: Floats
+
+    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Number]) -> None:
         self.measured, self.given, self.kinds = measured, given, kinds
         self.lowest = np.array([kind.lowest for kind in kinds])
         self.highest = np.array([kind.highest for kind in kinds])
-        self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
         self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
         # All passes to one side are solved as one sweep, whose stations are in order.
         ways = np.repeat(measured.ways, measured.rows)
@@ -45,12 +48,15 @@ class LeastSquaresFit:
                 self._sweeps[Sweep(given.sweep.stations, direction=way)] = here[order]
         self._last: tuple[Floats, list[Expected] | None] = np.empty(0), None
 
+    @abstractmethod
     def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa with these numbers."""
-        found = Sought(self.given)
-        for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
-            found = kind.tried(found, self.given, number)
-        return found
+        """What these numbers make of the case."""
+
+    def of(self, measured: Measured) -> Self:
+        """The same of other readings."""
+        other = copy(self)
+        LeastSquaresFit.__init__(other, measured, self.given, self.kinds)
+        return other
 
     def expected(self, numbers: Floats) -> Floats:
         """The readings that these numbers make one expect."""
@@ -114,6 +120,8 @@ class LeastSquaresFit:
     def _solved(self, numbers: Floats) -> list[Expected] | None:
         """The sweeps of the vibrissa with these numbers; None if there is no such sweep."""
         before, found = self._last  # derivatives are asked for where the misses were
+        if not np.isfinite(numbers).all():
+            return None
         if not np.array_equal(before, numbers):
             try:
                 found = self._swept(numbers, before, found)
@@ -166,3 +174,20 @@ class LeastSquaresFit:
         moved = foot * self.measured.slopes(readings).T
         covariance = np.diag(np.square(sizes)) + moved[:, :, None] * moved[:, None, :]
         return np.linalg.cholesky(covariance)
+
+
+class VibrissaFit(LeastSquaresFit):
+    """A vibrissa that is unknown, past an object that is known."""
+
+    kinds: Sequence[Unknown]
+
+    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
+        super().__init__(measured, given, kinds)
+        self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
+
+    def sought(self, numbers: Floats) -> Sought:
+        """The vibrissa with these numbers."""
+        found = Sought(self.given)
+        for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
+            found = kind.tried(found, self.given, number)
+        return found

@@ -25,17 +25,33 @@ class Sought:
 
 
 @dataclass(frozen=True)
-class Unknown:
-    """A fitted quantity, as a dimensionless number on which the readings depend smoothly."""
+class Number:
+    """A dimensionless number on which the readings depend smoothly."""
 
-    name: str  # of `QUANTITIES`; empty for the offset of the foot's positions
+    name: str
+    lowest: float  # what it can be
+    highest: float  # what it can be
+    starts: tuple[float, ...] = ()  # from which a fit starts, beside that of the case
+
+    @property
+    def called(self) -> str:
+        """What a user calls it."""
+        return self.name
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unknown(Number):
+    """A fitted quantity of the case; its name is of `QUANTITIES`, or empty for the offset."""
+
     unit: Callable[[Case], float]  # of the quantity, in the case as it was given
-    lowest: float  # what the number can be
-    highest: float  # what the number can be
     # Whether the quantity itself can be as at either end: a clamp can be rigid.
-    possible: tuple[bool, bool]
-    starts: tuple[float, ...]  # numbers from which a fit starts, beside that of the case
+    possible: tuple[bool, bool] = (False, False)
     said: str = ""  # what a user calls the quantity, if that is another one
+
+    @property
+    def called(self) -> str:
+        """What a user calls it."""
+        return self.said or self.name or "offset"
 
     def now(self, sought: Sought, given: Case) -> float:
         """The number, of what is tried."""
@@ -59,43 +75,42 @@ class Unknown:
 UNKNOWNS: dict[str, Unknown] = {
     "flexural_rigidity": Unknown(
         "flexural_rigidity",
-        lambda given: given.beam.base_rigidity,
         1 / _MOST_RIGID,
         _MOST_RIGID,
-        (False, False),
-        (),
+        unit=lambda given: given.beam.base_rigidity,
     ),
     "clamp_stiffness": Unknown(
         "clamp_compliance",
-        lambda given: 1 / given.beam.moment_unit,
         0.0,
         _SOFTEST,
-        (True, False),
         (0.05, 0.2, 0.8),
-        "clamp_stiffness",
+        unit=lambda given: 1 / given.beam.moment_unit,
+        possible=(True, False),
+        said="clamp_stiffness",
     ),
     "natural_curvature": Unknown(
         "natural_curvature",
-        lambda given: 1 / given.beam.length,
         -_MOST_BENT,
         _MOST_BENT,
-        (False, False),
         (-0.6, -0.2, 0.2, 0.6),
+        unit=lambda given: 1 / given.beam.length,
     ),
     "clamp_angle": Unknown(
-        "clamp_angle", lambda given: 1.0, -_MOST_LEANT, _MOST_LEANT, (False, False), (-0.1, 0.1)
+        "clamp_angle", -_MOST_LEANT, _MOST_LEANT, (-0.1, 0.1), unit=lambda given: 1.0
     ),
     "tip_radius": Unknown(
         "tip_radius",
-        lambda given: given.beam.radius,
         _THINNEST,
         1.0,
-        (False, True),
         (0.3, 0.6, 0.9),
+        unit=lambda given: given.beam.radius,
+        possible=(False, True),
     ),
-    "friction": Unknown("friction", lambda given: 1.0, 0.0, 1.0, (True, False), (0.1, 0.4)),
+    "friction": Unknown(
+        "friction", 0.0, 1.0, (0.1, 0.4), unit=lambda given: 1.0, possible=(True, False)
+    ),
     "offset": Unknown(
-        "", lambda given: given.beam.length, -_FARTHEST, _FARTHEST, (False, False), (-0.05, 0.05)
+        "", -_FARTHEST, _FARTHEST, (-0.05, 0.05), unit=lambda given: given.beam.length
     ),
 }
 """By name. The rigidity is that at the clamp; what varies along the vibrissa goes along with it.

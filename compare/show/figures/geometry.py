@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from analytic import Readings, deflected_shapes, reconstruct
+from analytic import FittedObject, Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
@@ -57,7 +57,9 @@ def geometry(comparison: Comparison) -> Figure:
     return figure
 
 
-def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
+def reconstruction(
+    readings: Readings, found: pd.DataFrame, fitted: FittedObject | None = None
+) -> Figure:
     """Draw the contact points that the clamp readings show, with their uncertainty if known.
 
     Those of other passes may follow; the vibrissa is drawn of the readings alone.
@@ -85,6 +87,14 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
         ax.add_collection(circles)
         ax.plot([], [], "o", color=style.GREEN, alpha=0.3, markersize=9, label="95 % of cases")
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
+    if fitted is not None:
+        angle, x, y, half = (np.asarray(values) for values in fitted.band.values())
+        across, up = half * np.sin(angle), half * np.cos(angle)
+        edges = np.column_stack([np.append(x + across, (x - across)[::-1]),
+                                 np.append(y - up, (y + up)[::-1])])  # fmt: skip
+        ax.fill(*(edges / scale).T, color=style.CANDIDATE, alpha=0.35, linewidth=0, zorder=3)
+        label = f"{fitted.family} and its 95 % band"
+        ax.plot(x / scale, y / scale, color=style.CANDIDATE, linewidth=1.2, label=label, zorder=4)
     if not there.any():
         ax.text(0.5, 0.5, "no contact found", transform=ax.transAxes, ha="center")
     beam = readings.beam

@@ -158,6 +158,7 @@ def words(command: str, kind: str, option: str) -> tuple[list[str], list[str]]:
     """The command without the option, and the option."""
     start = INSTEAD.get((command, kind, option), TAKES[command][kind])
     value = "other.toml" if option == "--beam" and command not in ("run", "view") else None
+    value = "circle" if (command, option) == ("reconstruct", "--fit") else value
     given = [option] if is_flag(command, option) else [option, value or VALUES[option]]
     return [command, *start], given
 

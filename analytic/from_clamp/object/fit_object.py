@@ -1,0 +1,296 @@
+"""The object as a whole: the contour of a family that explains the clamp's readings best."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic.from_clamp.calibration.calibrate import (
+    DOUBLE_SIDED_95,
+    Estimate,
+    explained_by_noise,
+    fitted_to_noise,
+)
+from analytic.from_clamp.calibration.fit import LeastSquaresFit
+from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
+from analytic.from_clamp.calibration.unknowns import Sought
+from analytic.from_clamp.correlated import Estimated, NoiseFound
+from analytic.from_clamp.object.families import Family, families
+from analytic.from_clamp.passes import Consistency, as_passes, consistency
+from analytic.from_clamp.reconstruct import reconstruct, require_beam
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.problem.case import Case
+from analytic.problem.clamp_path import Sweep
+from analytic.problem.contours.families import circle
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+from analytic.problem.shown import Shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FAMILIES = ("circle", "ellipse", "superellipse", "convex")
+_FEWEST = 8  # contact points
+_BAND = 181  # points of the band
+_STEP = 1e-5  # of a number, for a derivative
+
+
+@dataclass(frozen=True, repr=False)
+class FittedObject(Shown):
+    """An object of a family, as sweeps past it show it.
+
+    Parameters
+    ----------
+    family : str
+        Of `FAMILIES`.
+    found : dict
+        `Estimate` by parameter: lengths in the unit of the readings, else none.
+    case : Case
+        The vibrissa of the readings, past this object.
+    band : dict of array, shape (n,)
+        The contour over the slope angles that are touched: ``slope_angle`` [rad], ``x``, ``y``, and
+        ``half_width`` along the normal [length], within which the true one is in 95 % of all cases.
+    misfit : float
+        Root mean square of what the fit leaves, over the noise.
+    explains : bool
+        Whether noise alone explains that.
+    bic : float
+        Schwarz's criterion: the least of several families is the likeliest.
+    stations : int
+        How many the fit is from.
+    noise : NoiseFound
+        What of the noise remembers.
+    passes : Consistency or None
+        Of several passes, whether each alone says the same.
+    rivals : dict
+        `bic` and `explains` of each family that was tried.
+    """
+
+    family: str
+    found: dict[str, Estimate]
+    case: Case
+    band: dict[str, Floats]
+    misfit: float
+    explains: bool
+    bic: float
+    stations: int
+    noise: NoiseFound
+    passes: Consistency | None
+    rivals: dict[str, tuple[float, bool]]
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            self.family: "" if self.explains else "does not explain the readings",
+            **{
+                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
+                for name, one in self.found.items()
+            },
+            "misfit": f"{self.misfit:.3g}",
+            "stations": self.stations,
+        }
+
+    def _draw(self, figure: "Figure") -> None:
+        ax = figure.subplots()
+        x, y, half, angle = (self.band[n] for n in ("x", "y", "half_width", "slope_angle"))
+        along, up = half * np.sin(angle), half * np.cos(angle)
+        ax.fill(
+            np.append(x + along, (x - along)[::-1]), np.append(y - up, (y + up)[::-1]), alpha=0.3
+        )
+        ax.plot(x, y)
+        ax.set(aspect="equal", xlabel="x", ylabel="y", title=self.family)
+
+
+class ObjectFit(LeastSquaresFit):
+    """An object of a family, touched by a vibrissa that is known."""
+
+    def __init__(self, measured: Measured, given: Case, family: Family, start: Floats) -> None:
+        super().__init__(measured, given, family.kinds)
+        self.family = family
+        self.start = np.clip(start, self.lowest, self.highest)
+
+    def sought(self, numbers: Floats) -> Sought:
+        """The vibrissa past the object of these numbers."""
+        profile = self.family.profile(numbers).scaled(self.given.beam.length)
+        return Sought(replace(self.given, profile=profile))
+
+
+def fit_object(
+    readings: Readings | Sequence[Readings],
+    family: str = "circle",
+    noise: Mapping[str, float] | None = None,
+) -> FittedObject:
+    """The object of a family whose closed form explains the clamp's readings best.
+
+    Not the contact points are fitted but the readings, by the equations of the sweep: these know
+    which phase each station is in and that a contact at the tip has no freedom, so noise makes no
+    second phase and no points off the contour. The contact points of `reconstruct` are where the
+    search starts. Intervals are of the linearised fit, for noise that may remember, as those of
+    `calibrate`.
+
+    Parameters
+    ----------
+    readings : Readings, or a sequence of them
+        Only the four sensed columns are used; several are passes of one rig past one object.
+    family : str
+        ``"circle"``, ``"ellipse"`` with its axes along x and y, ``"superellipse"`` with an
+        exponent, ``"convex"``, of any radius of curvature along the contour, or ``"auto"``: that
+        of the least Schwarz criterion among those that explain the readings.
+    noise : mapping, optional
+        Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
+        it is what the readings themselves show.
+
+    Returns
+    -------
+    FittedObject
+        Parameters, intervals, and a band about the contour.
+
+    Raises
+    ------
+    InputError
+        If there is no such family, too few contacts, or the readings are of no such vibrissa; with
+        ``"auto"`` if no family explains them.
+    """
+    if family not in (*FAMILIES, "auto"):
+        allowed = f"one of {', '.join(FAMILIES)}, auto"
+        raise InputError("family", repr(family), allowed, "choose one")
+    passes = as_passes(readings)
+    x, y, angles = _contacts(passes)
+    known = families(angles)
+    tried: dict[str, tuple[ObjectFit, Floats, float, Estimated]] = {}
+
+    def fitted(name: str) -> tuple[ObjectFit, Floats, float, Estimated]:
+        if name not in tried:
+            one = known[name]
+            simpler = [fitted(other)[1] for other in one.simpler] or [_circle_through(x, y)]
+            measured, case = _measured(passes, noise, len(one.kinds))
+            fits = [ObjectFit(measured, case, one, one.start(numbers)) for numbers in simpler]
+            nearest = min(fits, key=lambda fit: float(np.sum(fit.misses(fit.start) ** 2)))
+            tried[name] = fitted_to_noise(nearest, noise is not None)
+        return tried[name]
+
+    if family == "auto":
+        found = []
+        for name in FAMILIES:
+            with suppress(InputError):  # one that the readings do not determine is none of them
+                found.append(_object(*fitted(name), angles))
+    else:
+        found = [_object(*fitted(family), angles)]
+    rivals = {one.family: (one.bic, one.explains) for one in found}
+    explaining = [one for one in found if one.explains]
+    if family == "auto" and not explaining:
+        best = (f", the best leaves {min(one.misfit for one in found):.3g} times the noise" if found
+                else "")  # fmt: skip
+        allowed = "one that explains the readings"
+        remedy = "several objects, a corner, friction, or a vibrissa that is not as stated"
+        raise InputError("family", f"none of them{best}", allowed, f"likely {remedy}")
+    return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)
+
+
+def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
+    """Contact points and slope angles of all passes, over L."""
+    tables = []
+    for one in passes:
+        one.require_sweep("the fit of an object")
+        table = reconstruct(one)
+        require_beam(table, one)
+        tables.append(table[(table["status"] == "ok")])
+    columns = ("contact_x", "contact_y", "contact_angle")
+    x, y, angle = (np.concatenate([table[name] for table in tables]) for name in columns)
+    if len(x) < _FEWEST:
+        allowed = f"{_FEWEST} or more"
+        raise InputError("contact points", len(x), allowed, "sweep further along the object")
+    long = passes[0].beam.length
+    return x / long, y / long, angle
+
+
+def _circle_through(x: Floats, y: Floats) -> Floats:
+    """Radius and centre of the circle nearest to points, by linear least squares (Kasa 1976).
+
+    Two rounds, the second one without points that are far off.
+    """
+    kept = np.full(len(x), True)
+    for _ in range(2):
+        design = np.column_stack([2 * x, 2 * y, np.ones_like(x)])[kept]
+        a, b, c = np.linalg.lstsq(design, (x**2 + y**2)[kept], rcond=None)[0]
+        radius = np.sqrt(max(c + a**2 + b**2, 0.0))
+        off = np.abs(np.hypot(x - a, y - b) - radius)
+        kept = off <= 4 * np.median(off)
+    return np.array([radius, a, b])
+
+
+def _measured(
+    passes: Sequence[Readings], noise: Mapping[str, float] | None, numbers: int
+) -> tuple[Measured, Case]:
+    """The stations under load, and the case of the vibrissa past an object to be replaced."""
+    measured = Measured.together([measured_under_load(one, noise, numbers) for one in passes])
+    beam: Beam = passes[0].beam
+    held = passes[0].support
+    case = Case(
+        beam,
+        circle(beam.length, (0.0, 0.5 * beam.length)),
+        Sweep(direction=measured.ways[0]),
+        **held._asdict(),
+    )
+    for one in passes:
+        check_size(one, case)
+    return measured, case
+
+
+def _object(
+    fit: ObjectFit, numbers: Floats, misfit: float, known: Estimated, angles: Floats
+) -> FittedObject:
+    long, kinds = fit.given.beam.length, fit.kinds
+    deviations = np.sqrt(np.diag(known.covariance))
+    found = {}
+    for kind, number, deviation in zip(kinds, numbers, deviations, strict=True):
+        unit = 1.0 if kind.name.startswith(("exponent", "log")) else long
+        half = DOUBLE_SIDED_95 * deviation
+        found[kind.name] = Estimate(
+            *(float(unit * x) for x in (number, number - half, number + half))
+        )
+    alike = consistency(known.by_pass) if len(fit.measured.rows) > 1 else None
+    stations = len(fit.measured.foot_x)
+    data = fit.measured.readings.size
+    return FittedObject(
+        fit.family.name,
+        found,
+        fit.sought(numbers).case,
+        {
+            name: long * x if name != "slope_angle" else x
+            for name, x in _band(fit.family, numbers, known.covariance, angles).items()
+        },
+        misfit,
+        explained_by_noise(misfit, data - len(kinds)),
+        -2 * known.likelihood + len(kinds) * float(np.log(data)),
+        stations,
+        known.noise,
+        alike,
+        {},
+    )
+
+
+def _band(family: Family, numbers: Floats, covariance: Floats, angles: Floats) -> dict[str, Floats]:
+    """The contour over the angles that are touched, and how well it is known along its normal."""
+    low, high = np.quantile(angles, [0.01, 0.99]).tolist()
+    angle = np.linspace(low, high, _BAND)
+
+    def places(at: Floats) -> Floats:
+        return np.stack(family.profile(at).place(angle))
+
+    here = places(numbers)
+    steps = _STEP * np.eye(len(numbers))
+    slopes = np.stack(
+        [(places(numbers + way) - places(numbers - way)) / (2 * _STEP) for way in steps]
+    )
+    normal = np.stack([np.sin(angle), -np.cos(angle)])
+    along = np.einsum("kcn,cn->kn", slopes, normal)
+    variance = np.einsum("kn,kl,ln->n", along, covariance, along)
+    return {
+        "slope_angle": angle,
+        "x": here[0],
+        "y": here[1],
+        "half_width": DOUBLE_SIDED_95 * np.sqrt(variance),
+    }
