@@ -7,9 +7,10 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import AliasPath, BaseModel, Field
 
-from analytic import CASE_NAMES, CLAMP_READINGS
+from analytic import CASE_NAMES
 from compare.explain.budget import Budget
 from compare.explain.split import Split
+from compare.explain.split_space import Parts
 from compare.read.run_folder import read_stored, read_stored_if_there
 
 _Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
@@ -28,7 +29,9 @@ class RunRecord(BaseModel):
 
     verdict: str
     disagreement: dict[str, _Disagreement]
-    apart: Annotated[float | None, Field(validation_alias=AliasPath("snap_off", "difference"))]
+    apart: Annotated[
+        float | None, Field(None, validation_alias=AliasPath("snap_off", "difference"))
+    ]
     # Share of stations whose phase is rightly judged from the clamp, in the worse sweep.
     phases_right: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
     source: Annotated[str, Field(validation_alias=_of_candidate("source"))]
@@ -36,7 +39,7 @@ class RunRecord(BaseModel):
     stations: Annotated[int, Field(gt=0, validation_alias=_of_candidate("stations"))]
     provenance: Annotated[dict[str, Any], Field(validation_alias=_of_candidate("provenance"))]
     folder: Path = Path()
-    budget: Budget | None = None  # if it was measured
+    budget: Budget | Parts | None = None  # if it was measured; the parts are of one in space
 
     @property
     def case(self) -> str:
@@ -46,7 +49,7 @@ class RunRecord(BaseModel):
     @property
     def profile(self) -> str:
         """What the object is."""
-        return str(self.provenance.get("profile", "contour not recorded"))
+        return str(self.provenance.get("profile", self.provenance.get("body", "not recorded")))
 
     @property
     def beam(self) -> str:
@@ -72,12 +75,12 @@ class RunRecord(BaseModel):
     @property
     def rms(self) -> dict[str, float | None]:
         """Disagreement by reading; None where nothing could be compared."""
-        return {name: self.disagreement[name].rms for name in CLAMP_READINGS}
+        return {name: one.rms for name, one in self.disagreement.items()}
 
     @property
     def worst(self) -> str:
         """The reading that disagrees most."""
-        return max(CLAMP_READINGS, key=lambda name: _size(self.rms[name]))
+        return max(self.rms, key=lambda name: _size(self.rms[name]))
 
     @property
     def error(self) -> float:
@@ -133,7 +136,7 @@ def read_runs(folder: Path) -> list[RunRecord]:
             read_stored(file, RunRecord).model_copy(
                 update={
                     "folder": file.parent,
-                    "budget": read_stored_if_there(file.with_name("budget.json"), Budget),
+                    "budget": read_stored_if_there(file.with_name("budget.json"), Budget | Parts),
                 }
             )
             for file in sorted(folder.glob("*/comparison.json"))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from analytic import CLAMP_READINGS, InputError
 from compare.explain.budget import UNRESOLVED, Budget
+from compare.explain.split_space import Parts
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
 from compare.show.numbers import percent, short
@@ -51,7 +52,7 @@ def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
             f"The largest rms is {short(worst.error)} of the largest magnitude ({worst.worst}, "
             f"{worst.case}, {worst.beam})."
         )
-    budgets = [run.budget for run in runs if run.budget is not None]
+    budgets = [run.budget for run in runs if isinstance(run.budget, Budget)]
     if budgets:
         rest = max((one.left for one in budgets), key=lambda part: part.rms)
         closed = sum(one.closes for one in budgets)
@@ -79,19 +80,21 @@ def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
 def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
     yield Text(f"{runs[0].profile}.")
     for run in runs:
-        if run.budget is not None:
+        if isinstance(run.budget, Budget):
             shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
             caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
             yield Image(run.folder / "budget.png", shows, caption)
 
 
 def _runs_table(runs: Sequence[RunRecord]) -> Table:
+    components = dict.fromkeys(CLAMP_READINGS)
+    components |= dict.fromkeys(name for run in runs for name in run.rms)
     rows = [
         (
             run.case,
             run.beam,
             str(run.settings.get("segments", "?")),
-            *(short(run.rms[name]) for name in CLAMP_READINGS),
+            *(short(run.rms[name]) if name in run.rms else "" for name in components),
             short(run.snap_off),
             "none" if run.phases_right is None else percent(run.phases_right),
             "not measured" if run.budget is None else _largest_part(run.budget),
@@ -101,17 +104,21 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
         for run in runs
     ]
     head = (
-        "case", "beam", "segments", *CLAMP_READINGS, "snap-off apart / L", "phases right",
+        "case", "beam", "segments", *components, "snap-off apart / L", "phases right",
         "largest part", "unexplained", "ms a station",
     )  # fmt: skip
-    return Table("Each run against its closed form", head, rows, words=(0, 1, 8))
+    return Table("Each run against its closed form", head, rows, words=(0, 1, len(head) - 3))
 
 
-def _left(budget: Budget) -> str:
+def _left(budget: Budget | Parts) -> str:
+    if isinstance(budget, Parts):
+        return short(budget.unexplained)
     return f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
 
 
-def _largest_part(budget: Budget) -> str:
+def _largest_part(budget: Budget | Parts) -> str:
+    if isinstance(budget, Parts):
+        return max("discretisation", "softness", "unexplained", key=budget._asdict().__getitem__)
     said = budget.blame
     if budget.blame == "discretisation":
         said += f" of order {budget.order:.2f}"

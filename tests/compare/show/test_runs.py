@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from analytic import InputError
+from compare.align.frames import COMPONENTS
+from compare.explain.split_space import Parts
 from compare.read.runs import read_runs
 from compare.report import write_report
 from tests.compare.planted import planted
@@ -117,3 +119,19 @@ def test_a_damaged_run_in_many_engines_is_a_line(tmp_path):
     (tmp_path / "runs" / "one" / "engines.json").write_text('{"case": "catenary"}')
     with pytest.raises(InputError, match=r"engines\.json = damaged \(engines"):
         write_report(tmp_path / "runs", tmp_path / "out")
+
+
+def test_a_run_in_space_is_a_row(tmp_path):
+    """Its six components, and its own parts; no snap-off, and no phases."""
+    rms = dict.fromkeys(COMPONENTS, {"rms": 4e-3})
+    egg = {"source": "mujoco chain", "stations": 12, "beam": {"length": 1.0}}
+    egg |= {"provenance": {"case": "egg", "body": "sphere", "settings": {"segments": 6}}}
+    content = {"verdict": "agrees", "disagreement": rms, "phases": {"agreement": None}}
+    parts = Parts(whole=4e-3, discretisation=3e-3, softness=1e-3, unexplained=1e-5, stations=9)
+    (tmp_path / "runs" / "egg").mkdir(parents=True)
+    for name, said in (("comparison", content | {"candidate": egg}), ("budget", parts.to_dict())):
+        (tmp_path / "runs" / "egg" / f"{name}.json").write_text(json.dumps(said))
+    text = write_report(tmp_path / "runs", tmp_path / "out").path.read_text()
+    assert text.count("<td>4.0e-3</td>") == len(COMPONENTS)
+    assert "discretisation" in text
+    assert "1 of 1 sweeps agree" in text
