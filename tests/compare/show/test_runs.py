@@ -123,7 +123,7 @@ def test_a_damaged_run_in_many_engines_is_a_line(tmp_path):
 
 def test_a_run_in_space_is_a_row(tmp_path):
     """Its six components, and its own parts; no snap-off, and no phases."""
-    rms = dict.fromkeys(COMPONENTS, {"rms": 4e-3})
+    rms = {name: {"rms": 4e-3} for name in COMPONENTS}
     egg = {"source": "mujoco chain", "stations": 12, "beam": {"length": 1.0}}
     egg |= {"provenance": {"case": "egg", "body": "sphere", "settings": {"segments": 6}}}
     content = {"verdict": "agrees", "disagreement": rms, "phases": {"agreement": None}}
