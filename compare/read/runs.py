@@ -131,17 +131,17 @@ class EnginesRecord:
 
 def read_runs(folder: Path) -> list[RunRecord]:
     """All runs in the folders of `folder`: the named cases first, in their order."""
-    return _in_order(
-        [
-            read_stored(file, RunRecord).model_copy(
-                update={
-                    "folder": file.parent,
-                    "budget": read_stored_if_there(file.with_name("budget.json"), Budget | Parts),
-                }
-            )
-            for file in sorted(folder.glob("*/comparison.json"))
-        ]
-    )
+    return _in_order([_read(file) for file in sorted(folder.glob("*/comparison.json"))])
+
+
+def _read(file: Path) -> RunRecord:
+    run, budget = read_stored(file, RunRecord), file.with_name("budget.json")
+    split: Budget | Parts | None = None
+    if "force_z" in run.rms:
+        split = read_stored_if_there(budget, Parts)
+    else:
+        split = read_stored_if_there(budget, Budget)
+    return run.model_copy(update={"folder": file.parent, "budget": split})
 
 
 def read_engines(folder: Path) -> list[EnginesRecord]:
