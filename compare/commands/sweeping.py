@@ -89,6 +89,9 @@ def find_body(
         terminal.print_line(f"readings: {complaint}")
     cloud = point_cloud(points)
     terminal.print_line(_reconstructed(cloud, body, readings.beam.length))
+    if friction := readings.provenance.get("friction", 0.0):
+        leant = np.degrees(np.arctan(friction))
+        terminal.print_line(f"friction tilts the normals found by up to {leant:.3g} degrees")
     terminal.keep(folder / "points.csv", points)
     terminal.print_written(write_ply(cloud, folder / "points.ply"))
     if with_picture:

@@ -14,7 +14,7 @@ from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
-from compare.read.tables import BeamTable
+from compare.read.tables import BeamTable, ContactTable
 from compare.read.toml import TomlFile
 from mujoco_models.settings import SpatialSettings
 
@@ -119,6 +119,7 @@ class SpaceFile(Table):
     # The contour of a prism, as in the plane.
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable  # the physics
+    contact: ContactTable = ContactTable()  # the physics
     # The numerics of MuJoCo's sweep.
     mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()
     # Limits of agreement, each with its reason.
@@ -139,7 +140,11 @@ class SpaceFile(Table):
         else:
             body = self.body.build(folder)
         return SpatialCase(
-            self.beam.build(), body=body, path=self.path.build(), name=self.name or name
+            self.beam.build(),
+            body=body,
+            path=self.path.build(),
+            friction=self.contact.friction,
+            name=self.name or name,
         )
 
 

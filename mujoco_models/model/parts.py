@@ -34,14 +34,16 @@ def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam,
 
 def parts_at_rest(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
     """Those of a sweep at rest, which is without friction."""
-    if case.friction != 0:
-        raise InputError(
-            "friction",
-            case.friction,
-            f"0 for {engine} at rest",
-            "with friction many states are at rest, and the motion decides which: simulate_motion",
-        )
+    require_no_friction(case.friction, engine)
     return parts(case, settings, engine)
+
+
+def require_no_friction(friction: float, engine: str = "MuJoCo") -> None:
+    """Refuse friction at rest."""
+    if friction != 0:
+        allowed = f"0 for {engine} at rest"
+        remedy = "with friction many states are at rest, and the motion decides which"
+        raise InputError("friction", friction, allowed, f"{remedy}: simulate_motion")
 
 
 def require_radius(radius: float, engine: str = "MuJoCo") -> None:

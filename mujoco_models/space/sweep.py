@@ -20,7 +20,7 @@ from analytic.space.problem.readings import (
 from analytic.space.problem.recorder import SpatialRecorder
 from mujoco_models.beams.kinds import build_spatial
 from mujoco_models.beams.layout import MOST_BENT
-from mujoco_models.model.parts import require_radius
+from mujoco_models.model.parts import require_no_friction, require_radius
 from mujoco_models.model.stations import engine, visit
 from mujoco_models.settings import SpatialSettings
 from mujoco_models.space.bodies import add_body
@@ -64,6 +64,7 @@ def run_space(
 def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:
     """Beam and body of a case."""
     require_radius(case.beam.radius)
+    require_no_friction(case.friction)
     beam, way = build_spatial(settings), case.way
     radius = case.beam.radius / case.beam.length
     spec = beam.spec(radius)

@@ -13,7 +13,15 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, SpatialReadings
+from analytic.space.problem.readings import (
+    CONTACT_POINT,
+    FOOT,
+    FORCE,
+    FRICTION,
+    MOMENT,
+    NORMAL,
+    SpatialReadings,
+)
 
 _TOLERANCE = 1e-13  # of the Dormand-Prince method of order 8
 _LOADS = 4  # steps to the whole load, each the start of the next
@@ -72,14 +80,16 @@ def rod_residuals(readings: SpatialReadings) -> Floats:
     -------
     array, shape (stations,)
         Largest of the misses of the contact's place [L], of the moment there, of the tangent's
-        angle against the surface in Phase B, of the force's direction against the normal and, in
-        Phase A, of what the tip points away from the body. Zero where the vibrissa is free, NaN
-        where there are no readings.
+        angle against the surface in Phase B, of the force's direction against the normal and the
+        friction recorded and, in Phase A, of what the tip points away from the body. Zero where the
+        vibrissa is free, NaN where there are no readings.
     """
     beam = readings.beam
     missed = np.where(readings.trusted, 0.0, np.nan)
     foot, contact = readings.values(*FOOT), readings.values(*CONTACT_POINT)
-    normal = readings.values("normal_x", "normal_y", "normal_z")
+    normal = pushes = readings.values(*NORMAL)
+    if set(FRICTION) <= set(readings.table):
+        pushes = normal + readings.values(*FRICTION)
     force = readings.values(*FORCE) / beam.force_unit
     moment = readings.values(*MOMENT) / beam.moment_unit
     reach = readings.values("contact_arc_length") / beam.length
@@ -96,11 +106,15 @@ def rod_residuals(readings: SpatialReadings) -> Floats:
         missed[i] = max(
             float(np.abs(place - axis).max()),
             float(np.abs(end).max()),
-            float(np.abs(force[i] / np.linalg.norm(force[i]) + normal[i]).max()),
+            float(np.abs(_unit(force[i]) + _unit(pushes[i])).max()),
             abs(away) if phase[i] == "tangent" else max(0.0, away),
             max(0.0, reach[i] - 1),
         )
     return missed
+
+
+def _unit(vector: Floats) -> Floats:
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def deflected_rods(readings: SpatialReadings) -> Floats:

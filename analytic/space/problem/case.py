@@ -8,6 +8,7 @@ import numpy as np
 from analytic.problem.beam import Beam
 from analytic.problem.case_shown import described
 from analytic.problem.errors import InputError, require
+from analytic.problem.numbers import within
 from analytic.problem.shown import Shown
 from analytic.problem.support import require_plain
 from analytic.space.problem.bodies.body import Body
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 _FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _LARGEST = 1e3  # L, of a mesh: a larger one is a wall, or in another unit
+_LEAST_FRICTION = 1e-6
 _SMALLEST = 1e-3  # L: a smaller one is a grain, or in another unit
 
 
@@ -39,6 +41,9 @@ class SpatialCase(Shown):
         In the unit of length of `beam`.
     path : FootPath
         The way of the foot, likewise.
+    friction : float
+        Coulomb's coefficient, 0 or from 1e-6 to 1. It acts on the vibrissa's axis: with a radius
+        the body is thicker by that, and a moment of at most radius times friction is left out.
     name : str
         What files and reports call the case.
 
@@ -52,6 +57,7 @@ class SpatialCase(Shown):
     beam: Beam = field(default_factory=Beam)
     body: Body = field(kw_only=True)
     path: FootPath = field(kw_only=True)
+    friction: float = field(default=0.0, kw_only=True)
     name: str = field(default="case", kw_only=True)
 
     def __post_init__(self) -> None:
@@ -63,6 +69,15 @@ class SpatialCase(Shown):
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
         require_plain("a sweep in space", self.beam)
+        if self.friction != 0:  # less is lost in rounding
+            within(
+                "friction", self.friction, _LEAST_FRICTION, 1.0, "0 is none, 0.1 to 0.5 is usual"
+            )
+        if self.friction and not self.body.smooth:
+            allowed = f"0 past a body with edges ({self.body.label}): a contact hops over them"
+            raise InputError(
+                "friction", self.friction, allowed, "take a smooth body, or leave it out"
+            )
         self._check_place()
         way = self.way
         begin = way.gap(0.0)
@@ -99,6 +114,7 @@ class SpatialCase(Shown):
             "case": self.name,
             "frame": "world, y up, right-handed; the clamp's action on the vibrissa at the foot",
             "body": self.body.label,
+            **({"friction": self.friction} if self.friction else {}),
             "path": {
                 "points": np.asarray(self.path.points).tolist(),
                 "height": self.path.height,

@@ -26,8 +26,10 @@ SENSED_IN_SPACE = (*FOOT, *FORCE, *MOMENT)
 """What the clamp of a sweep in space knows: where it is, force and moment."""
 CONTACT_POINT = ("contact_x", "contact_y", "contact_z")
 NORMAL = ("normal_x", "normal_y", "normal_z")
+FRICTION = ("friction_x", "friction_y", "friction_z")
+"""Over the normal force, on the vibrissa."""
 PHASES_IN_SPACE = ("free", "tip", "tangent")
-STATUSES_IN_SPACE = ("ok", "diverged", "slipped off", "unsettled", "lost")
+STATUSES_IN_SPACE = ("ok", "diverged", "slipped off", "sticks", "unsettled", "lost")
 _WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}
 
 
@@ -43,7 +45,9 @@ class SpatialReadings(SweepTable):
         frame: y up, x, y, z right-handed. ``travel`` [length] is the way of the foot.
         ``contact_*`` [length] is the contact on the body's surface, ``normal_*`` the body's outward
         normal there, ``contact_angle`` [rad] the surface's slope against the plane across the
-        clamp's tangent, ``contact_arc_length`` [length] its place on the vibrissa; ``phase`` and
+        clamp's tangent, ``contact_arc_length`` [length] its place on the vibrissa, ``friction_*``
+        friction on it over the normal force, ``slip_speed`` that of the vibrissa's point along the
+        body over the foot's; ``phase`` and
         ``status`` are words. All but the nine sensed columns may be missing.
     beam : Beam
         The vibrissa that was swept.

@@ -62,8 +62,15 @@ class StraightVibrissa:
     def foot(self, travel: float) -> Floats:
         """A foot position."""
         travel = min(max(travel, 0.0), float(self.marks[-1]))
-        leg = min(int(self.marks.searchsorted(travel, "right")), len(self._slopes)) - 1
+        leg = self._leg(travel)
         return np.asarray(self._corners[leg] + (travel - self.marks[leg]) * self._slopes[leg])
+
+    def onward(self, travel: float) -> Floats:
+        """Which way the foot goes from there."""
+        return np.asarray(self._slopes[self._leg(travel)])
+
+    def _leg(self, travel: float) -> int:
+        return min(int(self.marks.searchsorted(travel, "right")), len(self._slopes)) - 1
 
     def gap(self, travel: float) -> Gap:
         """How near the straight vibrissa is there."""

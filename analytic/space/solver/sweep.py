@@ -17,16 +17,20 @@ from analytic.space.problem.readings import (
     CONTACT_POINT,
     FOOT,
     FORCE,
+    FRICTION,
     MOMENT,
     NORMAL,
     SpatialReadings,
 )
 from analytic.space.solver.contact import Contact, Scene
+from analytic.space.solver.rod import Plane
+from analytic.space.solver.rubbing import Rubbed, Rubbing
 from analytic.space.solver.stability import margin, second_variation
-from analytic.space.solver.walk import walk
+from analytic.space.solver.walk import Gliding
 
 _SOLVED = 1e-11  # L, EI/L, rad: of the residual by the closed form
 _CERTIFIED = 1e-9  # of that by integration, which is good to 1e-12
+_RUBBED = (*FRICTION, "slip_speed")
 _NUMBERS = ("contact_angle", "contact_arc_length", "stability", "residual")
 _COLUMNS = ("phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL, *_NUMBERS, "status")
 
@@ -53,6 +57,11 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
         closed form, or from the clamp by integration if that is larger; ``status`` is
         ``"diverged"`` where it exceeds 1e-11, or 1e-9 by integration. ``provenance["events"]``
         lists what happens where.
+        With friction there are also the columns ``friction_*``, friction over the normal force, and
+        ``slip_speed``, of the vibrissa's point along the body over the foot's; no ``stability``: a
+        contact that slides leaves its equilibria only where the foot stands still on their curve.
+        ``status`` is ``"sticks"`` from a first contact that can slide in no direction to where the
+        straight vibrissa is clear.
         A vibrissa that comes to an edge which drops it hops to the stable state of less energy
         close by, if that is one; the event ``"hop"`` says where.
     """
@@ -61,12 +70,13 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     scene = Scene(way.body, case.path.clamp_tangent, way.radius)
     travel = case.path.travel
     with threadpool_limits(1):  # the matrices are small
-        walked = walk(scene, way, travel / length)
+        walker = Rubbing(scene, way, case.friction) if case.friction else Gliding(scene, way)
+        walked = walker.along(travel / length)
     rows = [
-        _row(contact, way.foot(at / length), scene, beam) if contact else _free(fine)
-        for contact, fine, at in zip(walked.contacts, walked.known, travel, strict=True)
+        _row(contact, way.foot(at / length), scene, beam) if contact else _free(status)
+        for contact, status, at in zip(walked.contacts, walked.statuses, travel, strict=True)
     ]
-    table = pd.DataFrame(rows, columns=list(_COLUMNS))
+    table = pd.DataFrame(rows, columns=[*_COLUMNS, *(_RUBBED if case.friction else ())])
     foot = dict(zip(FOOT, case.path.at(travel).T, strict=True))
     table = pd.concat([pd.DataFrame({"travel": travel, **foot}), table], axis=1)
     events = [
@@ -79,23 +89,31 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     return _with_certificate(readings) if certified else readings
 
 
-def _row(contact: Contact, foot: Floats, scene: Scene, beam: Beam) -> dict[str, object]:
+def _row(held: Contact | Rubbed, foot: Floats, scene: Scene, beam: Beam) -> dict[str, object]:
     """One station that touches; its foot is the one that was asked for."""
-    plane, radius = contact.plane, scene.radius
+    contact = held if isinstance(held, Contact) else held.state.contact
+    plane, spot = contact.plane, contact.spot
     force = -contact.force * plane.normal
     moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
-    stable = margin(second_variation(contact, radius))
     missed = _missed(contact, foot, scene)
-    numbers = plane.alpha, contact.arc_length * beam.length, stable, missed
-    return {
+    row: dict[str, object] = {
         "phase": "tangent" if contact.tangent else "tip",
         **dict(zip(FORCE, force * beam.force_unit, strict=True)),
         **dict(zip(MOMENT, moment * beam.moment_unit, strict=True)),
-        **dict(zip(CONTACT_POINT, contact.spot.point * beam.length, strict=True)),
-        **dict(zip(NORMAL, plane.normal, strict=True)),
-        **dict(zip(_NUMBERS, numbers, strict=True)),
+        **dict(zip(CONTACT_POINT, spot.point * beam.length, strict=True)),
+        **dict(zip(NORMAL, spot.normal, strict=True)),
+        "contact_angle": Plane.of(scene.tangent, spot.normal).alpha,
+        "contact_arc_length": contact.arc_length * beam.length,
+        "residual": missed,
         "status": "ok" if missed <= _SOLVED else "diverged",
     }
+    if isinstance(held, Contact):
+        row["stability"] = margin(second_variation(contact, scene.radius))
+    else:
+        slides = not held.stretch.panel.law.sticks
+        numbers = *held.state.rub, float(np.linalg.norm(held.velocity)) if slides else 0.0
+        row |= dict(zip(_RUBBED, numbers, strict=True))
+    return row
 
 
 def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
@@ -113,10 +131,10 @@ def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
     )
 
 
-def _free(known: bool) -> dict[str, object]:
+def _free(status: str) -> dict[str, object]:
     """One station that touches nothing, or of which nothing is known."""
-    if not known:
-        return {"phase": "free", "status": "slipped off"}
+    if status != "ok":
+        return {"phase": "free", "status": status}
     nothing = dict.fromkeys((*FORCE, *MOMENT, "residual"), 0.0)
     return {"phase": "free", **nothing, "status": "ok"}
 

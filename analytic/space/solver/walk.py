@@ -1,7 +1,8 @@
 """Along the way of the foot: contacts begin, are followed, hop, and end by release or slip-off."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -20,39 +21,46 @@ _BESIDE = 1e-6  # L: beside a seam, of faces that are 1e-7 rad apart, contacts a
 _PACE = 10.0  # of the foot's, that a contact may have there
 _MISSES = 200  # of these between two stations, and of edges that are crossed
 _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
-_LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
+LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
 _STEADY = 1e-6  # the same across an edge, where the foot moves by 1e-9
 
 
-class Walked(NamedTuple):
+class Touching(Protocol):
+    """A state of a vibrissa that touches."""
+
+    @property
+    def force(self) -> float:
+        """Magnitude of the contact's force [EI/L^2]."""
+
+
+Held = TypeVar("Held", bound=Touching)
+
+
+class Walked(NamedTuple, Generic[Held]):
     """The states of the stations; lengths in L."""
 
     # none where the vibrissa is free, or where it is not known where it is.
-    contacts: list[Contact | None]
-    # false between a slip-off and where the straight vibrissa is clear of the body again.
-    known: list[bool]
+    contacts: list[Held | None]
+    # "ok", or why it is not known, up to where the straight vibrissa is clear of the body again.
+    statuses: list[str]
     events: list[WalkEvent]
 
 
-def walk(scene: Scene, way: StraightVibrissa, travel: Sequence[float] | Floats) -> Walked:
-    """Every station's state, in order."""
-    return _Walker(scene, way).along(travel)
+class Walker(ABC, Generic[Held]):
+    """Goes from contact to contact; how one is followed is for each kind of walker to say."""
 
-
-class _Walker:
     def __init__(self, scene: Scene, way: StraightVibrissa) -> None:
         self._scene = scene
         self._way = way
-        self._smooth = not isinstance(scene.body, Polyhedron)
         self._events: list[WalkEvent] = []
 
-    def along(self, travel: Sequence[float] | Floats) -> Walked:
-        contacts: list[Contact | None] = []
-        known: list[bool] = []
-        contact: Contact | None = None
-        at = 0.0
-        unknown_until = 0.0
+    def along(self, travel: Sequence[float] | Floats) -> Walked[Held]:
+        """Every station's state, in order."""
+        contacts: list[Held | None] = []
+        statuses: list[str] = []
+        contact: Held | None = None
+        at, unknown_until, status = 0.0, 0.0, "ok"
         touch = self._way.next_touch(0.0)
         for station in travel:
             while True:
@@ -61,6 +69,10 @@ class _Walker:
                         break
                     at, contact = touch, self._begin(touch)
                     self._note("touch", touch)
+                    if contact is None:
+                        touch, unknown_until = self._clear_of(at)
+                        status = "sticks"
+                        continue
                 at, contact, arrived = self._follow(contact, at, station)
                 if arrived:
                     break
@@ -68,14 +80,55 @@ class _Walker:
                 if landed is not None:
                     at, contact = landed
                     continue
-                touch, unknown_until = self._let_go(contact, at)
+                status = self._end(contact, at)
+                touch, unknown_until = self._clear_of(at)
+                if status == "ok":
+                    unknown_until = at
                 contact = None
             contacts.append(contact)
-            known.append(contact is not None or station >= unknown_until)
-        return Walked(contacts, known, sorted(self._events, key=lambda event: event.travel))
+            known = contact is not None or station >= unknown_until
+            statuses.append("ok" if known else status)
+        return Walked(contacts, statuses, sorted(self._events, key=lambda event: event.travel))
+
+    @abstractmethod
+    def _begin(self, travel: float) -> Held | None:
+        """The contact of a vibrissa that is hardly bent; none if friction holds it there."""
+
+    @abstractmethod
+    def _follow(self, contact: Held, at: float, to: float) -> tuple[float, Held, bool]:
+        """As far as its equilibrium goes; whether that is all."""
+
+    def _land(self, contact: Held, travel: float) -> tuple[float, Held] | None:
+        """The state to which a vibrissa hops, and where its foot is then."""
+        return None
+
+    def _end(self, contact: Held, travel: float) -> str:
+        """Note how a contact ends; the status of stations up to where the vibrissa is clear."""
+        released = contact.force < LOOSE
+        self._note("release" if released else "slip-off", travel)
+        return "ok" if released else "slipped off"
+
+    def _clear_of(self, travel: float) -> tuple[float | None, float]:
+        """Where the straight vibrissa touches next, and from where on it is clear."""
+        clear: float | None = travel
+        if self._way.gap(travel).size <= 0:
+            clear = self._way.next_clear(travel)
+        if clear is None:
+            return None, np.inf
+        return self._way.next_touch(clear + 10 * _CLOSE), clear
+
+    def _note(self, kind: str, travel: float) -> None:
+        self._events.append(WalkEvent(kind, travel))
+
+
+class Gliding(Walker[Contact]):
+    """Without friction."""
+
+    def __init__(self, scene: Scene, way: StraightVibrissa) -> None:
+        super().__init__(scene, way)
+        self._smooth = not isinstance(scene.body, Polyhedron)
 
     def _begin(self, travel: float) -> Contact:
-        """The contact of a vibrissa that is hardly bent."""
         gap = self._way.gap(travel)
         x = gap.spot.point + APART * gap.spot.normal
         upright = gap.spot.normal @ self._scene.tangent >= -_BARELY
@@ -86,7 +139,7 @@ class _Walker:
         return contact_at(self._scene, x, lowest, tangent=True)
 
     def _follow(self, contact: Contact, at: float, to: float) -> tuple[float, Contact, bool]:
-        """As far as there is a stable equilibrium near the one before; whether that is all."""
+        """As far as there is a stable equilibrium near the one before."""
         failed, missed = np.inf, 0
         while at < to:
             if failed - at <= _CLOSE:
@@ -144,8 +197,7 @@ class _Walker:
         return found if found is not None and _apart(found, start) < steady else None
 
     def _land(self, contact: Contact, travel: float) -> tuple[float, Contact] | None:
-        """The state to which a vibrissa hops, and where its foot is then."""
-        if contact.force < _LOOSE:
+        if contact.force < LOOSE:
             return None
         beyond = min(travel + _BEYOND, float(self._way.marks[-1]))
         foot = self._way.foot(beyond)
@@ -154,20 +206,6 @@ class _Walker:
             return None
         self._note("hop", travel)
         return beyond, landed
-
-    def _let_go(self, contact: Contact, travel: float) -> tuple[float | None, float]:
-        """Where the vibrissa touches next, and from where on it is known to be free."""
-        released = contact.force < _LOOSE
-        self._note("release" if released else "slip-off", travel)
-        clear: float | None = travel
-        if self._way.gap(travel).size <= 0:
-            clear = self._way.next_clear(travel)
-        if clear is None:
-            return None, travel if released else np.inf
-        return self._way.next_touch(clear + 10 * _CLOSE), travel if released else clear
-
-    def _note(self, kind: str, travel: float) -> None:
-        self._events.append(WalkEvent(kind, travel))
 
 
 def _apart(one: Contact, other: Contact) -> float:

@@ -34,6 +34,11 @@ class Body(ABC):
 
     label: str
 
+    @property
+    def smooth(self) -> bool:
+        """Whether it has neither edges nor corners."""
+        return True
+
     @abstractmethod
     def nearest(self, x: Floats, apart: float) -> Spot:
         """The surface's nearest point.

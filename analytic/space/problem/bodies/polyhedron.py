@@ -57,6 +57,11 @@ class Polyhedron(Body):
         begins = np.searchsorted(self.faces.ravel()[order], np.arange(len(self.vertices) + 1))
         return begins, order // 3
 
+    @property
+    def smooth(self) -> bool:
+        """It has edges."""
+        return False
+
     def nearest(self, x: Floats, apart: float) -> Spot:
         """Walks over the triangles that the point sees, always to a nearer one.
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.polygon import Polygon
 from analytic.problem.errors import require
 from analytic.problem.numbers import positive
 from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
@@ -61,6 +62,11 @@ class Prism(Body):
     origin: Floats  # of the contour's coordinates, shape (3,) [length]
     frame: Floats  # the contour's x and y and the prism's axis, a row each
     label: str  # what reports call it
+
+    @property
+    def smooth(self) -> bool:
+        """Not with the contour of a polygon."""
+        return not isinstance(self.contour, Polygon)
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """In the plane of the contour."""

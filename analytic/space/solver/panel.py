@@ -1,0 +1,230 @@
+r"""The curve of states that rub, panel by panel, by collocation.
+
+Along a panel all of a state is a polynomial of what grows along the curve's tangent at its begin.
+It starts from what it was there. At Radau's points it is at rest, and obeys Coulomb's law: while it
+slides the velocity v of the vibrissa's point along the body, the polynomials' slope, is along
+friction, v . (n x rub) = 0 and |rub| = mu; while it sticks v = 0. Radau's method damps, however
+stiff a law is: the less friction there is the faster its direction follows the velocity, and at
+first contact, where f rub' = G(rub, f), at once.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import Legendre, legendre
+
+from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import cross
+from analytic.space.solver.contact import Scene
+from analytic.space.solver.sliding import (
+    BY_TRAVEL,
+    LENGTH,
+    RUB,
+    TRAVEL,
+    Leg,
+    Sliding,
+    changed,
+    end_rates,
+    equations,
+    grows,
+    state_of,
+)
+
+_POINTS = 8
+_STEPS = 12  # of Newton's method
+_WILD = 1.0  # L and rad, of any of them
+# Of its last step; where the force is so small that rounding leaves more, what that leaves.
+_EXACT, _ROUNDING = 1e-12, 1e-7
+_LEFT = 1e-10  # L, rad and of friction over the normal force: of the polynomials' last terms
+_AT_REST = 1e-15  # of the equations, by the extent
+
+
+def _radau() -> Floats:
+    last = Legendre.basis(_POINTS) - Legendre.basis(_POINTS - 1)
+    return np.concatenate([[0.0], (np.sort(last.roots().real) + 1) / 2])
+
+
+POINTS = _radau()
+"""Shares of a panel: its begin, and Radau's points with its end."""
+_SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
+_SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
+
+
+class Law(NamedTuple):
+    """Coulomb's, of a contact that slides, or sticks, along a straight part of the way."""
+
+    leg: Leg
+    friction: float
+    sticks: bool
+
+    def ways(self, state: Sliding) -> Floats:
+        """Directions along the body in which the velocity vanishes, shape (1 or 2, 3)."""
+        if self.sticks:
+            return state.sides
+        return cross(state.contact.spot.normal, state.rub)[None] / self.friction
+
+    def missed(self, state: Sliding) -> Floats:
+        """What vanishes at rest with such friction, shape (5 or 6,)."""
+        contact = state.contact
+        phase = -state.leans_in if contact.tangent else contact.arc_length - 1
+        off = float(contact.plane.normal @ state.beside)
+        found = [*(contact.foot - self.leg.foot(state.travel)), off, phase]
+        if not self.sticks:
+            found.append((float(state.rub @ state.rub) / self.friction - self.friction) / 2)
+        return np.array(found)
+
+    def rows(self, state: Sliding) -> Floats:
+        """The rates of that, shape (5 or 6, 8)."""
+        found = equations(state, self.leg.onward)
+        if self.sticks:
+            return found
+        size = np.zeros(8)
+        size[RUB] = state.sides @ state.rub / self.friction
+        return np.vstack([found, size])
+
+    def along_curve(self, state: Sliding) -> Floats:
+        """Rates as the foot goes on, shape (8,); at first contact friction keeps its direction."""
+        ways = self.ways(state)
+        law = np.zeros((len(ways), 8))
+        if state.contact.force > 0:
+            law[:, :2] = ways @ state.moved
+            law[:, LENGTH] = -(ways @ state.end)
+        else:
+            law[:, RUB] = ways @ state.sides.T
+        found = np.linalg.svd(np.vstack([self.rows(state), law]))[2][-1]
+        return np.asarray(found * np.sign(found[TRAVEL]))
+
+    def settled(self, scene: Scene, near: Sliding, by: Floats, amount: float) -> Sliding | None:
+        """At rest, where weighted parts of the state come to an amount: the nearest such state."""
+        state, missed = near, np.inf
+        extent = max(1.0, float(np.abs(near.contact.foot).max()))
+        for _ in range(_STEPS):
+            miss = np.append(self.missed(state), by @ state.vector - amount)
+            last, missed = missed, float(np.abs(miss).max()) / extent
+            if missed <= _AT_REST or (missed > last / 4 and missed <= 100 * _AT_REST):
+                return state
+            rows = np.vstack([self.rows(state), grows(state, by)])
+            if not np.isfinite(rows).all() or missed > _WILD:
+                return None
+            step = np.asarray(-rows.T @ np.linalg.solve(rows @ rows.T, miss))
+            vector = state.vector + changed(state, step)
+            state = state_of(scene, vector, state.contact.tangent)
+        return None
+
+
+class Panel(NamedTuple):
+    """A part of the curve."""
+
+    scene: Scene
+    law: Law
+    by: Floats  # weights of the state's vector: what grows along the panel
+    reach: float
+    states: list[Sliding]  # at `POINTS`
+
+    @property
+    def vectors(self) -> Floats:
+        """Of the states."""
+        return np.array([state.vector for state in self.states])
+
+    @property
+    def coarse(self) -> float:
+        """How much its polynomials leave, over what they may."""
+        return float(np.abs(_SERIES[-1] @ self.vectors).max()) / _LEFT
+
+    def share_at(self, travel: float) -> float:
+        """Where the foot has come so far; it goes on until there."""
+        series = _SERIES @ self.vectors[:, -1]
+        series[0] -= travel
+        roots = legendre.legroots(series)
+        real = roots[np.abs(roots.imag) < 1e-6].real
+        return float((real[np.argmin(np.abs(real - np.clip(real, -1, 1)))] + 1) / 2)
+
+    def beyond(self, shares: Floats) -> Floats:
+        """Vectors of its polynomials, also past its end."""
+        return np.asarray(legendre.legvander(2 * shares - 1, _POINTS) @ _SERIES @ self.vectors)
+
+    def at(self, share: float, travel: float | None = None) -> Sliding:
+        """The state at a share of the panel, or where the foot has come so far."""
+        tangent = self.states[-1].contact.tangent
+        near = state_of(self.scene, self.beyond(np.array([share]))[0], tangent)
+        by, amount = self.by, float(self.by @ self.states[0].vector) + share * self.reach
+        if travel is not None:
+            by, amount = BY_TRAVEL, travel
+        found = self.law.settled(self.scene, near, by, amount)
+        return near if found is None else found
+
+    def velocity(self, share: float, state: Sliding) -> tuple[Floats, float]:
+        """Of the vibrissa's point along the body, and the foot's speed, along the panel."""
+        slopes = 2 * legendre.legvander(np.array([2 * share - 1]), _POINTS - 1)[0]
+        grows = slopes @ legendre.legder(_SERIES @ _moving(self.states)) / self.reach
+        return grows[:3] - grows[3] * state.end, float(grows[4])
+
+
+def panel(
+    scene: Scene, law: Law, start: Sliding, reach: float, before: Panel | None = None
+) -> Panel | None:
+    """From a state on; none if Newton's method does not find it.
+
+    It begins along the curve's tangent, or as the panel before, if that leads on.
+    """
+    by = changed(start, law.along_curve(start))
+    by = by / np.sqrt(by @ by)
+    amounts = float(by @ start.vector) + reach * POINTS[1:]
+    if before is None:
+        vectors = start.vector + np.outer(reach * POINTS[1:], by)
+    else:
+        vectors = before.beyond(1 + reach / before.reach * POINTS[1:])
+    states = [state_of(scene, vector, start.contact.tangent) for vector in vectors]
+    size = np.inf
+    for _ in range(_STEPS):
+        matrix, missed = _system(law, start, states, reach, by, amounts)
+        if not np.isfinite(matrix).all():
+            return None
+        try:
+            steps = np.asarray(np.linalg.solve(matrix, -missed), dtype=float).reshape(_POINTS, 8)
+        except np.linalg.LinAlgError:
+            return None
+        last, size = size, float(np.abs(steps).max())
+        if not size < _WILD:
+            return None
+        both = zip(states, steps, strict=True)
+        states = [
+            state_of(scene, one.vector + changed(one, step), start.contact.tangent)
+            for one, step in both
+        ]
+        if size <= _EXACT or (size <= _ROUNDING and size > last / 4):
+            return Panel(scene, law, by, reach, [start, *states])
+    return None
+
+
+def _system(
+    law: Law, start: Sliding, states: list[Sliding], reach: float, by: Floats, amounts: Floats
+) -> tuple[Floats, Floats]:
+    """Newton's matrix of all points of a panel, and what they miss."""
+    moving = _SLOPES[1:] @ _moving([start, *states]) / reach
+    slopes = _SLOPES[1:, 1:] / reach
+    matrix, missed = np.zeros((_POINTS, 8, _POINTS, 8)), np.zeros((_POINTS, 8))
+    for i, (state, amount) in enumerate(zip(states, amounts, strict=True)):
+        ways, speed = law.ways(state), moving[i, 3]
+        rest = 7 - len(ways)
+        velocity = moving[i, :3] - speed * state.end
+        missed[i, :rest] = law.missed(state)
+        missed[i, rest:7], missed[i, 7] = ways @ velocity, by @ state.vector - amount
+        for j, other in enumerate(states):
+            matrix[i, rest:7, j, :2] = slopes[i, j] * ways @ other.moved
+            matrix[i, rest:7, j, LENGTH] = -slopes[i, j] * (ways @ state.end)
+        own = matrix[i, :, i]
+        own[:rest], own[7] = law.rows(state), grows(state, by)
+        own[rest:7] -= speed * ways @ end_rates(state)
+        if not law.sticks:
+            turned = cross(state.rub, velocity) @ state.turned
+            own[6, :2] += turned / law.friction
+            own[6, RUB] += state.sides @ cross(velocity, state.contact.spot.normal) / law.friction
+    return matrix.reshape(8 * _POINTS, -1), missed.ravel()
+
+
+def _moving(states: list[Sliding]) -> Floats:
+    """The vibrissa's axis at the contact, arc length, and the foot's travel, shape (n, 5)."""
+    return np.array(
+        [[*state.contact.centre, state.contact.arc_length, state.travel] for state in states]
+    )

@@ -1,0 +1,166 @@
+"""Along the way of the foot with friction: contacts slide, stick, change phase, and end.
+
+A vibrissa that sticks at once is followed no further: a straight one cannot be longer.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from analytic.problem.arrays import Floats
+from analytic.space.problem.straight import StraightVibrissa
+from analytic.space.solver.contact import Scene
+from analytic.space.solver.first_slip import first_slips
+from analytic.space.solver.panel import POINTS, Law, Panel, panel
+from analytic.space.solver.sliding import Leg, Sliding, state_of
+from analytic.space.solver.walk import LOOSE, Walker
+
+_FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's tangent
+_LONGER, _SHORTER = 2.0, 0.25  # times the last one
+_SAFE = 0.8  # of a length that would just be short enough
+_LAST = "slip-off", "release"
+_CLOSE = 1e-14  # of a panel, to which events are enclosed
+# How much coarser the panel of a first contact may be: with so little force rounding leaves more of
+# friction's direction, and it is steep. What follows forgets it.
+_STEEP = 1e3
+_MARKED = 1e-12  # L, to a corner of the way
+_STILL = 1e-9  # of a speed: a contact that has just begun to slide hardly does
+
+
+class Stretch(NamedTuple):
+    """A panel up to what happens first on it."""
+
+    panel: Panel
+    end: float  # share of it
+    event: str | None  # none at its own end
+    last: Sliding  # the state there
+
+
+class Rubbed(NamedTuple):
+    """A state on its stretch."""
+
+    state: Sliding
+    velocity: Floats  # of the vibrissa's point along the body by the foot's, shape (3,)
+    stretch: Stretch
+
+    @property
+    def force(self) -> float:
+        """Magnitude of the contact's force, friction and all [EI/L^2]."""
+        return self.state.contact.force
+
+
+class Rubbing(Walker[Rubbed]):
+    """With Coulomb's friction."""
+
+    def __init__(self, scene: Scene, way: StraightVibrissa, friction: float) -> None:
+        super().__init__(scene, way)
+        self._friction = friction
+
+    def _begin(self, travel: float) -> Rubbed | None:
+        for state in first_slips(self._scene, self._way, travel, self._friction):
+            found = self._panel(self._leg(travel), state, False, _FIRST, None)
+            if found is not None and self._margins(found, 1)["stick"] > 0:
+                return Rubbed(state, np.zeros(3), self._stretch(found))
+        return None
+
+    def _follow(self, contact: Rubbed, at: float, to: float) -> tuple[float, Rubbed, bool]:
+        stretch = contact.stretch
+        while stretch.last.travel < to:
+            if stretch.event in ("phase", "stick", "slide"):
+                self._note(stretch.event, stretch.last.travel)
+            following = self._after(stretch)
+            if following is None:
+                at = stretch.last.travel
+                if stretch.event == "release":
+                    at = max(at, self._way.next_clear(at) or at)
+                return at, contact._replace(state=stretch.last, stretch=stretch), False
+            stretch = following
+        share = min(stretch.panel.share_at(to), stretch.end)
+        state = stretch.panel.at(share, to)
+        velocity, speed = stretch.panel.velocity(share, state)
+        return to, Rubbed(state, velocity / speed, stretch), True
+
+    def _end(self, contact: Rubbed, travel: float) -> str:
+        known = contact.stretch.event in _LAST
+        return super()._end(contact, travel) if known else "diverged"
+
+    def _after(self, stretch: Stretch) -> Stretch | None:
+        """What follows; none after the last of a contact."""
+        done, state, event = stretch.panel, stretch.last, stretch.event
+        if event in _LAST:
+            return None
+        sticks, leg = done.law.sticks, done.law.leg
+        if event == "phase":
+            state = state_of(self._scene, state.vector, not state.contact.tangent)
+        elif event in ("stick", "slide"):
+            sticks = not sticks
+        elif event == "corner":
+            leg = self._leg(state.travel)
+        reach = min(done.reach * min(_change(done), _LONGER), _LONGEST)
+        found = self._panel(leg, state, sticks, reach, done if event is None else None)
+        if found is not None and not sticks and self._margins(found, 0)["stick"] < -_STILL:
+            found = self._panel(leg, state, True, reach, None)  # the foot has turned
+        return None if found is None else self._stretch(found)
+
+    def _leg(self, travel: float) -> Leg:
+        begins = self._way.marks[:-1]
+        mark = float(begins[begins <= travel + _MARKED][-1])
+        return Leg(self._way.foot(mark), self._way.onward(mark), mark)
+
+    def _panel(
+        self, leg: Leg, state: Sliding, sticks: bool, reach: float, before: Panel | None
+    ) -> Panel | None:
+        """As long as its polynomials may be."""
+        law = Law(leg, self._friction, sticks)
+        allowed = 1 if state.contact.force > 0 else _STEEP
+        while reach > _SHORTEST:
+            found = panel(self._scene, law, state, reach, before)
+            if found is not None and found.coarse <= allowed:
+                return found
+            reach *= _SHORTER if found is None else max(_change(found), _SHORTER)
+        return None
+
+    def _stretch(self, found: Panel) -> Stretch:
+        """Up to the first event."""
+        margins = [self._margins(found, i) for i in range(1, len(POINTS))]
+        end, event = 1.0, None
+        for kind in margins[0]:
+            passed = [i for i, values in enumerate(margins, start=1) if values[kind] <= 0]
+            if not passed:
+                continue
+
+            def margin(share: float, kind: str = kind) -> float:
+                return self._margin(found, share, found.at(share))[kind]
+
+            low, high = float(POINTS[passed[0] - 1]), float(POINTS[passed[0]])
+            share = low if margin(low) <= 0 else float(brentq(margin, low, high, xtol=_CLOSE))
+            if share < end:
+                end, event = share, kind
+        return Stretch(found, end, event, found.states[-1] if event is None else found.at(end))
+
+    def _margins(self, found: Panel, i: int) -> dict[str, float]:
+        return self._margin(found, float(POINTS[i]), found.states[i])
+
+    def _margin(self, found: Panel, share: float, state: Sliding) -> dict[str, float]:
+        """What is positive up to an event."""
+        velocity, speed = found.velocity(share, state)
+        contact, size = state.contact, float(np.sqrt(state.rub @ state.rub))
+        margins = {
+            "slip-off": speed,
+            "release": contact.force - LOOSE / 2,
+            "phase": 1 - contact.arc_length if contact.tangent else state.leans_in,
+        }
+        if found.law.sticks:
+            margins["slide"] = self._friction - size
+        else:
+            margins["stick"] = -float(velocity @ state.rub) / size
+        ahead = self._way.marks[self._way.marks > found.law.leg.travel]
+        if len(ahead) > 1:
+            margins["corner"] = float(ahead[0]) - state.travel
+        return margins
+
+
+def _change(found: Panel) -> float:
+    """How much longer a panel might be, or has to be shorter."""
+    return _SAFE * float(max(found.coarse, 1e-12) ** (-1 / (len(POINTS) - 1)))
