@@ -285,8 +285,6 @@ def compare(
         raise InputError("frame", repr(frame), "'world' in the plane", "leave it out")
     reference = require("reference", reference, Readings, _AS_TABLE)
     candidate = require("candidate", candidate, Readings, _AS_TABLE)
-    for given in (reference, candidate):
-        given.require_sweep("a comparison")
     tolerances = checked_limits(tolerances, Tolerances).suited_to(candidate)
     found = measure(reference, candidate, tolerances.snap_off_window, offset)
     level = noise_level(reference, found.candidate) if noise == "auto" else checked_level(noise)

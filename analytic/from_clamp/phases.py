@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
+from analytic.from_clamp.turning import as_upright
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.readings import Readings
@@ -66,6 +67,9 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     far better than such noise allows, and no contact is taken for none. Nor is it where stations
     without contact show no noise at all, as a simulator's, whose readings may jump amid contact.
     """
+    if readings.running != "foot_x":
+        leftward = readings.mirrored() if readings.runs_right else readings
+        return judge_phases(as_upright(leftward), noise)
     sensed = dimensionless(readings)
     _, force_x, force_y, moment = sensed
     seen = np.array(list(reading_noise(readings).values()))

@@ -10,6 +10,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam, Varying
+from analytic.problem.columns import SCHEMA
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
 from analytic.problem.shown import Shown
@@ -98,6 +99,13 @@ class SweepTable(Shown):
     def running_values(self) -> Floats:
         """Where along the sweep its stations are, shape (stations,)."""
         return self.values(self.running)
+
+    @property
+    def running_unit(self) -> tuple[float, str]:
+        """How much of it a place along the sweep is said in, and what that is called: L or rad."""
+        if SCHEMA[self.running].dimension == "angle":
+            return 1.0, "rad"
+        return self.beam.length, "L"
 
     @property
     def beyond_the_paper(self) -> Mapping[str, Varying]:

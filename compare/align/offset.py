@@ -137,7 +137,7 @@ def offset_fits(
         if number < _FEWEST:
             raise _ambiguous(f"{number} trusted stations of the {name} in contact")
     seen = np.stack([candidate.values(n) / size for n, size in scales(reference).items()])
-    x = candidate.values("foot_x")
+    x = candidate.running_values
     near: list[float] = []
     for start in _scan(curve, x, seen, loaded, candidate.trusted):
         plain = _fit(curve, x[loaded], seen[:, loaded], start, robust=False)
@@ -165,7 +165,7 @@ class _Curve:
 
     @classmethod
     def of(cls, reference: Readings, judged: Classification) -> "_Curve":
-        x = reference.values("foot_x")
+        x = reference.running_values
         values = np.stack([reference.values(n) / size for n, size in scales(reference).items()])
         touching = np.isin(judged.phase, ("tip", "tangent"))
         places = locate_transitions(reference, judged)

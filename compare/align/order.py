@@ -1,6 +1,7 @@
 """Rows in the order of the motion, and which way that goes."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -27,25 +28,27 @@ class RowOrder:
     sorted: bool = False  # the rows are in no order of a motion
     # The foot moves the other way: rows and ``moment_z`` both have the other sign.
     opposite: bool = False
+    column: str = "foot_x"  # over which the sweeps run
 
     @property
     def note(self) -> str | None:
         """What is wrong with the rows, and what was compared instead; None if nothing is."""
         if self.reversed:
             return (
-                "rows reversed: foot_x runs the other way than in the reference while force and "
-                "moment have its signs; compared from the last row to the first"
+                f"rows reversed: {self.column} runs the other way than in the reference while "
+                "force and moment have its signs; compared from the last row to the first"
             )
         if self.backwards_from is not None:
-            turned = f"{self.backwards_from:.4g} - foot_x" if self.backwards_from else "-foot_x"
+            turned = f"{self.backwards_from:.4g} - " if self.backwards_from else "-"
             return (
-                "foot_x counts the other way: it grows where the reference's falls, while force "
-                f"and moment follow the reference row by row; compared with {turned} instead"
+                f"{self.column} counts the other way: it grows where the reference's falls, while "
+                "force and moment follow the reference row by row; compared with "
+                f"{turned}{self.column} instead"
             )
         if self.sorted:
             return (
-                "rows out of order: foot_x leads back and forth; compared after sorting by foot_x, "
-                "in the direction that the signs of force and moment show"
+                f"rows out of order: {self.column} leads back and forth; compared after sorting by "
+                f"{self.column}, in the direction that the signs of force and moment show"
             )
         return None
 
@@ -59,27 +62,26 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
     reference. Where only `foot_x` runs the other way, either the rows are reversed or a stage
     counts its way backwards: which of them lays the readings over the reference's decides.
     """
-    record = inspect_record(candidate)
+    record, order = inspect_record(candidate), partial(RowOrder, column=candidate.running)
     opposite = _sign(candidate, "moment_z") * _sign(reference, "moment_z") < 0
     if record.retreats:
         # A sweep the other way has the sign of force_y; a sensor that is turned has not.
         opposite &= _sign(candidate, "force_y") * _sign(reference, "force_y") > 0
         sign = -direction(reference) if opposite else direction(reference)
-        sorted_ = _taken(candidate, np.argsort(sign * candidate.values("foot_x"), kind="stable"))
+        sorted_ = _taken(candidate, np.argsort(sign * candidate.running_values, kind="stable"))
         again = replace(inspect_record(sorted_), retreats=record.retreats)
-        return sorted_, again, RowOrder(sorted=True, opposite=opposite)
+        return sorted_, again, order(sorted=True, opposite=opposite)
     if direction(candidate) * direction(reference) > 0:
-        return candidate, record, RowOrder()
+        return candidate, record, order()
     if opposite:
-        return candidate, record, RowOrder(opposite=True)
+        return candidate, record, order(opposite=True)
     origin = _backwards_from(reference, candidate)
     if origin is not None:
-        counted_back = replace(
-            candidate, table=candidate.table.assign(foot_x=origin - candidate.values("foot_x"))
-        )
-        return counted_back, inspect_record(counted_back), RowOrder(backwards_from=origin)
+        back = {candidate.running: origin - candidate.running_values}
+        counted_back = replace(candidate, table=candidate.table.assign(**back))
+        return counted_back, inspect_record(counted_back), order(backwards_from=origin)
     reversed_rows = _taken(candidate, np.arange(len(candidate.table))[::-1])
-    return reversed_rows, inspect_record(reversed_rows), RowOrder(reversed=True)
+    return reversed_rows, inspect_record(reversed_rows), order(reversed=True)
 
 
 def _backwards_from(reference: Readings, candidate: Readings) -> float | None:
@@ -119,7 +121,7 @@ def _shape(readings: Readings) -> tuple[Floats, Floats]:
     rows = rows[:: -(-len(rows) // _ROWS) or 1]
     values = np.stack([readings.values(name)[rows] for name in CLAMP_READINGS])
     scale = np.max(np.abs(values), axis=1, initial=0.0, keepdims=True)
-    return readings.values("foot_x")[rows], values / np.where(scale > 0, scale, 1.0)
+    return readings.running_values[rows], values / np.where(scale > 0, scale, 1.0)
 
 
 def _taken(readings: Readings, rows: np.ndarray) -> Readings:

@@ -1,4 +1,4 @@
-"""Two sweeps brought to the same foot positions, phase by phase."""
+"""Two sweeps brought to the same places along their way, phase by phase."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,8 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
 from compare.sense.phases import Classification
 
-_SAME_STATION = 1e-9  # L; nearer foot positions are one and the same
+_SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
+_SAME_POSE = 1e-6  # L, rad
 _CUBIC = 4  # stations that a cubic spline needs
 _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings out
 
@@ -21,7 +22,8 @@ _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings 
 class Alignment:
     """Where both sweeps are in contact, and why the candidate's other stations are left out."""
 
-    # A row a compared station of the candidate: ``station`` (its row), ``foot_x``, ``phase`` (the
+    # A row a compared station of the candidate: ``station`` (its row), ``at`` (where along the
+    # sweep it is), ``phase`` (the
     # reference's), ``contact_arc_length`` (the reference's at its nearest station, from the clamp)
     # and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     table: pd.DataFrame
@@ -47,26 +49,24 @@ def align(
 ) -> Alignment:
     """Pair the candidate's stations with the reference, never across a transition or snap-off.
 
-    A reference station at the same foot position is taken as it is. Otherwise the reference is
+    A reference station at the same place is taken as it is. Otherwise the reference is
     interpolated by a cubic spline through one uninterrupted stretch of one phase.
     """
     length = reference.beam.length
-    check_same_beam(reference, candidate)
-    x, x_ref = candidate.values("foot_x"), reference.values("foot_x")
-    outside = (x < x_ref.min() - _SAME_STATION * length) | (
-        x > x_ref.max() + _SAME_STATION * length
-    )
+    size, _ = reference.running_unit
+    x, x_ref = candidate.running_values, reference.running_values
+    outside = (x < x_ref.min() - _SAME_STATION * size) | (x > x_ref.max() + _SAME_STATION * size)
     if outside.all():
         raise InputError(
-            "foot_x of the two readings",
+            f"{reference.running} of the two readings",
             f"{x_ref.min():.6g}..{x_ref.max():.6g} and {x.min():.6g}..{x.max():.6g}",
             "overlapping",
-            "sweep a common stretch, or check units and origin of foot_x",
+            f"sweep a common stretch, or check units and origin of {reference.running}",
         )
     order = np.argsort(x_ref)
     between = (x_ref[order][1:] + x_ref[order][:-1]) / 2
     nearest = order[np.searchsorted(between, x, side="right")]
-    same = np.abs(x_ref[nearest] - x) <= _SAME_STATION * length
+    same = np.abs(x_ref[nearest] - x) <= _SAME_STATION * size
 
     phase = reference_phase.phase
     starts = np.flatnonzero(np.append(True, phase[1:] != phase[:-1]))
@@ -88,7 +88,7 @@ def align(
     compared = reasons == "compared"
     columns = {
         "station": np.flatnonzero(compared),
-        "foot_x": x[compared],
+        "at": x[compared],
         "phase": state[compared],
         "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
     }
@@ -120,6 +120,36 @@ def check_same_beam(
             "the same, in the same units",
             "compare sweeps of one vibrissa, both in its units",
         )
+
+
+def check_same_way(reference: Readings, candidate: Readings) -> None:
+    """Refuse sweeps of two vibrissae, or of clamps that turn or leave their line on two ways."""
+    check_same_beam(reference, candidate)
+    if reference.running != candidate.running:
+        raise InputError(
+            "ways of the two clamps",
+            f"over {reference.running} and over {candidate.running}",
+            "one and the same",
+            "sweep both along one way; measured readings need its columns, as clamp_angle",
+        )
+    if reference.running == "foot_x":
+        return
+    order, at = np.argsort(reference.running_values), candidate.running_values
+    x, length = reference.running_values[order], reference.beam.length
+    within = (at >= x[0]) & (at <= x[-1])
+    for name, (ours, theirs), size in (
+        ("foot_x", (reference.values("foot_x"), candidate.values("foot_x")), length),
+        ("foot_y", (reference.foot_y, candidate.foot_y), length),
+        ("clamp_angle", (reference.clamp_angle, candidate.clamp_angle), 1.0),
+    ):
+        off = np.abs(np.interp(at, x, ours[order]) - theirs)[within].max(initial=0.0) / size
+        if off > _SAME_POSE:
+            raise InputError(
+                f"{name} of {candidate.source}",
+                f"up to {off:.2g} away from that of {reference.source}",
+                f"the same at the same {reference.running}, to {_SAME_POSE:g} L or rad",
+                "sweep both along one way, at the same stations if it is curved",
+            )
 
 
 def _covering(x_ref: Floats, starts: Integers, x: Floats) -> Integers:

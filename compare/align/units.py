@@ -70,7 +70,7 @@ def _magnitudes(readings: Readings) -> Floats:
 
 def _travel(readings: Readings) -> float:
     """How far the foot travels under load [length]."""
-    x = readings.values("foot_x")[_loaded(readings)]
+    x = readings.running_values[_loaded(readings)]
     return float(np.ptp(x)) if len(x) else 0.0
 
 
@@ -84,7 +84,7 @@ def _misfit(
     reference: Readings, candidate: Readings, reference_phase: Classification, factor: float
 ) -> float:
     """How badly the candidate fits at its best offset, its foot positions divided by `factor`."""
-    table = candidate.table.assign(foot_x=candidate.values("foot_x") / factor)
+    table = candidate.table.assign(**{candidate.running: candidate.running_values / factor})
     scaled = replace(candidate, table=table)
     try:
         return offset_fits(reference, scaled, reference_phase, classify(scaled))[0].misfit

@@ -149,8 +149,9 @@ def physical_faults(
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
     text = "flexural rigidity {:+.2%} off: all readings scale alike"
     yield Cause(text.format, true, -0.8, 2.2, acts=partial(_scaled, np.ones((3, 1))))
-    reference, length = found.reference, found.reference.beam.length
-    x, slope, every = table["foot_x"].to_numpy(), slopes(table, true), np.ones((3, 1))
+    reference, name = found.reference, found.reference.running
+    size_of, unit = reference.running_unit
+    x, slope, every = table["at"].to_numpy(), slopes(table, true), np.ones((3, 1))
     rows = np.stack([reference.values(name) for name in CLAMP_READINGS])
     if "phase" in reference.table:
         rows[:, says(reference.table["phase"], "free")] = np.nan
@@ -161,7 +162,7 @@ def physical_faults(
         """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
         def change(size: float) -> Floats:
-            seen = _between(at(size, x), reference.values("foot_x"), rows) / scale[:, None]
+            seen = _between(at(size, x), reference.running_values, rows) / scale[:, None]
             return np.where(only > 0, seen - true, 0.0)
 
         def acts(size: float, added: Floats, foot_x: Floats) -> Floats:
@@ -169,24 +170,25 @@ def physical_faults(
 
         return Cause(text.format, only * slope * rate, -most, most, change, acts)
 
+    see = ", see `--offset auto`" if name == "foot_x" else ""
     # Farther off the readings are no longer linear in it; `offset` is there for that.
     yield displaced(
-        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset auto`",
+        f"{name} {{:+.2e}} {unit} off, the same at all stations: an offset (or a lag){see}",
         every,
         0.1,
-        -length,
-        lambda size, foot_x: foot_x - size * length,
+        -size_of,
+        lambda size, foot_x: foot_x - size * size_of,
     )
     yield displaced(
-        "scale of the stage {:+.2%} off: foot_x is too large by that, counted from 0",
+        f"scale of the stage {{:+.2%}} off: {name} is too large by that, counted from 0",
         every,
         0.2,
         -x,
         lambda size, foot_x: foot_x / (1 + size),
     )
-    way = direction(reference) * length
-    for one, name in zip(np.eye(3), CLAMP_READINGS, strict=True):
-        text = f"{name} lags by {{:+.2e}} L of the foot's way: its channel is late"
+    way = direction(reference) * size_of
+    for one, felt in zip(np.eye(3), CLAMP_READINGS, strict=True):
+        text = f"{felt} lags by {{:+.2e}} {unit} of the clamp's way: its channel is late"
         yield displaced(text, one[:, None], 0.1, -way, lambda size, foot_x: foot_x - size * way)
     exact = Resolved.of(reference, x)
     if exact is not None:
@@ -257,7 +259,7 @@ def _change(exact: Resolved, fault: str, scale: Floats, size: float) -> Floats |
 def slopes(table: pd.DataFrame, true: Floats) -> Floats:
     """Derivative of the readings by the foot position, phase by phase."""
     slope = np.full_like(true, np.nan)
-    phase, x = table["phase"].to_numpy(), table["foot_x"].to_numpy()
+    phase, x = table["phase"].to_numpy(), table["at"].to_numpy()
     for here in np.split(np.arange(len(x)), np.flatnonzero(phase[1:] != phase[:-1]) + 1):
         if len(here) >= _FEWEST and np.ptp(x[here]) > 0:
             slope[:, here] = interpolant(x[here], true[:, here])(x[here], 1)

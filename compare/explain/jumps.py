@@ -25,7 +25,7 @@ def uneven(
         _unrest(found, error)
         or _stepped(found, error, scale)
         or _humming(found, error)
-        or _jittering(error, slopes)
+        or _jittering(found, error, slopes)
         or _scattered(found, error, jumps, scale)
     )
 
@@ -80,18 +80,20 @@ def _humming(found: Measurement, error: Floats) -> str | None:
     )
 
 
-def _jittering(error: Floats, slopes: Floats) -> str | None:
+def _jittering(found: Measurement, error: Floats, slopes: Floats) -> str | None:
     """A foot that is not where the stage says, by another distance at each station."""
     known = np.isfinite(slopes).all(axis=0)
     error, slopes = error[:, known], slopes[:, known]
     steep = np.sum(slopes**2, axis=0)
-    if not steep.all():
+    if not (known.any() and steep.all()):
         return None
     off = np.sum(error * slopes, axis=0) / steep
     along = np.sum(off**2 * steep) >= _ALONG * np.sum(error**2)
     if not along or scatter(off) ** 2 < _JUMPING * np.mean(off**2):
         return None
-    return f"jitter of foot_x by {rms(off):.1e} L from station to station: all readings follow it"
+    name, (_, unit) = found.reference.running, found.reference.running_unit
+    size = f"{rms(off):.1e} {unit}"
+    return f"jitter of {name} by {size} from station to station: all readings follow it"
 
 
 def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) -> str | None:

@@ -30,14 +30,15 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     station, everything else by fitting the size of each fault's signature.
     """
     if found.order.opposite:
-        return "opposite direction of travel: foot_x and moment_z run opposite to the reference's"
+        both = f"{found.order.column} and moment_z"
+        return f"opposite direction of travel: {both} run opposite to the reference's"
     notes = [note] if (note := found.order.note) else []
     notes += [x for x in found.records["candidate"].defects() if not x.startswith("rows out of")]
     if not found.alignment.counts["compared"]:
         return "; ".join(notes) or _untouched(found)
     table = found.alignment.table
     window = before_snap_off(
-        found.reference, table["foot_x"].to_numpy(), found.snap_off, limits.snap_off_window
+        found.reference, table["at"].to_numpy(), found.snap_off, limits.snap_off_window
     )
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
     table = table[~window & sound].reset_index(drop=True)
@@ -52,11 +53,10 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     short = _short(found)
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
-    at = table["foot_x"].to_numpy() / found.reference.beam.length
-    cause = _lone(error, at, limits, noise)
+    cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         jumps = np.array([scatter(row) for row in error])
-        slope = found.reference.beam.length * slopes(table, true)
+        slope = found.reference.running_unit[0] * slopes(table, true)
         cause = uneven(found, error, slope, jumps, scale) or one_or_two(
             found, table, true, seen, scale, jumps
         )
@@ -88,29 +88,32 @@ def _short(found: Measurement) -> list[str]:
     """That the sweep does not cover all events of the reference."""
     if not (beyond := found.beyond()):
         return []
-    foot_x = found.candidate.values("foot_x") / found.reference.beam.length
+    size, unit = found.reference.running_unit
+    at, name = found.candidate.running_values / size, found.reference.running
     return [
-        f"too short a sweep: it covers foot_x = {foot_x.min():.4g} to {foot_x.max():.4g} L, and "
+        f"too short a sweep: it covers {name} = {at.min():.4g} to {at.max():.4g} {unit}, and "
         f"{' and '.join(beyond)} of the reference lie{'s' * (len(beyond) == 1)} beyond"
     ]
 
 
 def _ended(found: Measurement) -> str | None:
     """That the candidate lets go early, where that is all that is wrong with it."""
-    ends, length = found.snap_off, found.reference.beam.length
+    ends, (size, unit) = found.snap_off, found.reference.running_unit
     if ends.reference is None or ends.candidate is None:
         return None
-    early = direction(found.reference) * (ends.reference - ends.candidate) / length
-    steps = np.median(np.abs(np.diff(found.candidate.values("foot_x")))) / length
+    early = direction(found.reference) * (ends.reference - ends.candidate) / size
+    steps = np.median(np.abs(np.diff(found.candidate.running_values))) / size
     if early < max(_EARLY, 3 * steps):
         return None
     return (
-        f"the contact ends early, at foot_x = {ends.candidate / length:.4g} L instead of "
-        f"{ends.reference / length:.4g} L, and agrees up to there"
+        f"the contact ends early, at {found.reference.running} = {ends.candidate / size:.4g} "
+        f"{unit} instead of {ends.reference / size:.4g} {unit}, and agrees up to there"
     )
 
 
-def _lone(error: Floats, foot_x: Floats, limits: Tolerances, noise: NoiseAllowance) -> str | None:
+def _lone(
+    found: Measurement, error: Floats, at: Floats, limits: Tolerances, noise: NoiseAllowance
+) -> str | None:
     """Single stations that are far off, if all others agree or nearly all of it is theirs."""
     size = np.abs(error).max(axis=0)
     off = size > _FAR_OFF * np.median(size)
@@ -122,10 +125,11 @@ def _lone(error: Floats, foot_x: Floats, limits: Tolerances, noise: NoiseAllowan
         return None
     worst = int(size.argmax())
     reading = CLAMP_READINGS[int(np.abs(error[:, worst]).argmax())]
+    unit, name = found.reference.running_unit, found.reference.running
     return (
         f"single stations: {off.sum()} of {len(off)} compared {'is' if off.sum() == 1 else 'are'} "
-        f"off by up to {size[worst]:.1e} of the largest {reading} (at foot_x = "
-        f"{foot_x[worst]:.4g} L); "
+        f"off by up to {size[worst]:.1e} of the largest {reading} (at {name} = "
+        f"{at[worst] / unit[0]:.4g} {unit[1]}); "
         + ("all others agree" if agree else "nearly all of the disagreement is theirs")
     )
 

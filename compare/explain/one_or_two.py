@@ -68,7 +68,7 @@ def one_or_two(
     if known.sum() < _FEWEST:
         return None
     true, seen = true[:, known], seen[:, known]
-    foot_x = table["foot_x"].to_numpy()[known]
+    foot_x = table["at"].to_numpy()[known]
     physical = [fault.over(known) for fault in physical]
     faults = [*sensor_faults(true), *physical]
     wirings = list(misread(true, seen, scale, found.reference.beam.length))

@@ -107,12 +107,12 @@ class Shared:
 
 def common_stations(exact: Readings, runs: Iterable[Readings], window: float) -> Booleans:
     """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
-    foot_x = exact.values("foot_x")
-    kept = np.ones(len(foot_x), dtype=bool)
+    along = exact.running_values
+    kept = np.ones(len(along), dtype=bool)
     for readings in (exact, *runs):
         kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
     if exact.snap_off is not None:
-        kept &= ~before_snap_off(exact, foot_x, Occurrence(exact.snap_off, None), window)
+        kept &= ~before_snap_off(exact, along, Occurrence(exact.snap_off, None), window)
     return kept
 
 

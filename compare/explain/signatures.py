@@ -43,7 +43,7 @@ class Resolved:
     def of(cls, reference: Readings, foot_x: Floats) -> Resolved | None:
         """The sweep of a reference whose contour is in its provenance."""
         contour = reference.provenance.get("contour")
-        if contour is None:
+        if contour is None or reference.running != "foot_x":
             return None
         beam, swept = reference.beam, reference.values("foot_x")
         sweep = Sweep(_STATIONS, direction="left" if swept[-1] < swept[0] else "right")

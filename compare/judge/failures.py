@@ -40,9 +40,10 @@ class Failure:
 
 def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
     """Every limit that is exceeded in the plane."""
+    _, unit = found.reference.running_unit
     yield from _order(found)
     yield from _contact(found)
-    yield from _components(found, limits, noise, "foot_x = {:.5g} L")
+    yield from _components(found, limits, noise, f"{found.reference.running} = {{:.5g}} {unit}")
     asked = limits.limits()
     for which, right in found.phase_agreement().items():
         judged = f"{right:.1%} judged rightly from the clamp"
@@ -116,7 +117,7 @@ def _components(
     found: Measurement | SpatialMeasurement, limits: Limits, noise: Allowance, place: str
 ) -> Iterator[Failure]:
     """Root mean squares and the largest differences, at a place along the travel [L]."""
-    length = found.reference.beam.length
+    length, (size, _) = found.reference.beam.length, found.reference.running_unit
     for name, one in found.disagreement.items():
         level = noise.level[name]
         most = max(one.rms_by_phase, key=one.rms_by_phase.__getitem__, default="")
@@ -132,7 +133,7 @@ def _components(
         for phase, peak in one.peaks.items():
             limit = limits.of(name, "max", phase)
             widened = noise.max(limit, name, one.stations)
-            at = place.format(peak.at / length)
+            at = place.format(peak.at / size)
             said = f"off by {peak.size:.2e} of its largest magnitude at {at}"
             if phase:
                 said += f" in phase {phase}"
@@ -155,26 +156,26 @@ def _events(
     beyond: Iterable[str] = (),
     unknown: Iterable[str] = (),
 ) -> Iterator[Failure]:
-    length = found.reference.beam.length
+    size, unit = found.reference.running_unit
     for name, (event, limit) in events.items():
-        if event.agrees(limit * length):
+        if event.agrees(limit * size):
             continue
         if event.difference is not None:
-            wide = event.uncertainty / length
-            apart = event.difference / length
-            said = f"{apart:+.2e} L apart" + (f" +- {wide:.1e} L" if wide else "")
-            yield from _beyond(name, said, abs(apart), limit, limit + wide, unit=" L")
+            wide = event.uncertainty / size
+            apart = event.difference / size
+            said = f"{apart:+.2e} {unit} apart" + (f" +- {wide:.1e} {unit}" if wide else "")
+            yield from _beyond(name, said, abs(apart), limit, limit + wide, unit=f" {unit}")
             continue
         which, other, at = "reference", "candidate", event.reference
         if at is None:
             which, other, at = "candidate", "reference", event.candidate
-        said = f"only in the {which}, at {(at or 0.0) / length:.5g} L"
+        said = f"only in the {which}, at {(at or 0.0) / size:.5g} {unit}"
         if name in beyond:
             said += ", beyond the stretch that the candidate covers"
         if name in unknown:
             said += f", where stations of the {other} are not to be trusted"
         weight = _FOLLOWS if name in unknown else 0
-        yield Failure(name, said, f"allowed {limit:.2e} L", limit.reason, weight=weight)
+        yield Failure(name, said, f"allowed {limit:.2e} {unit}", limit.reason, weight=weight)
 
 
 def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator[Failure]:
@@ -184,12 +185,12 @@ def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator
 
 def _order(found: Measurement) -> Iterator[Failure]:
     if found.order.note is not None:
-        todo = "write the rows and foot_x as the motion goes"
+        todo = f"write the rows and {found.order.column} as the motion goes"
         yield Failure("order", found.order.note, todo, weight=_FIRST)
     if found.order.opposite:
         yield Failure(
             "direction",
-            "foot_x and moment_z of the candidate run opposite to the reference's",
+            f"{found.order.column} and moment_z of the candidate run opposite to the reference's",
             "compare with a reference swept the same way (`[sweep] direction`), or with the mirror "
             "image (`Readings.mirrored`) if the object is symmetric",
             weight=_FIRST,
@@ -233,7 +234,8 @@ def untrusted_stretches(readings: Readings | SpatialReadings) -> Iterator[str]:
     """Which stations a sweep itself does not trust, and where."""
     if "status" not in readings.table:
         return
-    for status, foot_x in readings.table.groupby("status", sort=False)["foot_x"]:
+    name, (size, unit) = readings.running, readings.running_unit
+    for status, along in readings.table.groupby("status", sort=False)[name]:
         if status != "ok":
-            first, last = foot_x.iloc[[0, -1]] / readings.beam.length
-            yield f"{len(foot_x)} {status}, foot_x {first:.4g} to {last:.4g} L"
+            first, last = along.iloc[[0, -1]] / size
+            yield f"{len(along)} {status}, {name} {first:.4g} to {last:.4g} {unit}"

@@ -53,7 +53,7 @@ class Judged(SweepPair[Sweep]):
 
     def lines(self) -> Iterator[str]:
         """The verdict, the disagreement of each component, and what failed, for a terminal."""
-        length = self.reference.beam.length
+        size, unit = self.reference.running_unit
         yield (
             f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
             f"{self.reference.source}, by {self.stations} of {len(self.candidate.table)} stations"
@@ -67,8 +67,8 @@ class Judged(SweepPair[Sweep]):
         yield from self._beside()
         for name, event in self.events.items():
             if event.candidate is not None and event.difference is not None:
-                at, apart = event.candidate / length, event.difference / length
-                yield f"  {name:13} at {at:.5g} L, {apart:+.1e} L apart"
+                at, apart = event.candidate / size, event.difference / size
+                yield f"  {name:13} at {at:.5g} {unit}, {apart:+.1e} {unit} apart"
         for failure in self.exceeded[:_SHOWN]:
             yield f"  failed: {failure.clause}"
         if len(self.exceeded) > _SHOWN:

@@ -207,8 +207,8 @@ class Tolerances(Limits):
 
     def _in_motion(self, rate: Rate, candidate: "Readings") -> dict[str, Limit]:
         """These limits, and what the speed adds to each."""
-        foot_x = candidate.values("foot_x")
-        stations, travel = len(foot_x), float(np.ptp(foot_x)) / candidate.beam.length
+        along, (size, _) = candidate.running_values, candidate.running_unit
+        stations, travel = len(along), float(np.ptp(along)) / size
         adds = rate.lag + rate.inertia
         what = (
             f"{rate.lag:.1e} for the dampers' lag, zeta v T1/(pi L), and {rate.inertia:.1e} for "

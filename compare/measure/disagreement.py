@@ -107,31 +107,29 @@ def disagreements(
     reference: Readings, table: pd.DataFrame, snap: Occurrence, window: float
 ) -> dict[str, Disagreement]:
     """How far the clamp readings are apart at the stations that `align` paired."""
-    foot_x = table["foot_x"].to_numpy()
-    near = before_snap_off(reference, foot_x, snap, window)
+    at = table["at"].to_numpy()
+    near = before_snap_off(reference, at, snap, window)
     phase, arc_length = (table[name].to_numpy()[~near] for name in ("phase", "contact_arc_length"))
     found = {}
     for name, scale in scales(reference).items():
         error = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy() / scale
-        here = disagreement(error[~near], foot_x[~near], phase, scale, arc_length)
+        here = disagreement(error[~near], at[~near], phase, scale, arc_length)
         inside = float(np.abs(error[near]).max()) if near.any() else np.nan
         found[name] = replace(here, max_before_snap_off=inside)
     return found
 
 
-def before_snap_off(
-    reference: Readings, foot_x: Floats, snap: Occurrence, window: float
-) -> Booleans:
-    """Whether each foot position lies within the window at the earlier one of two snap-offs.
+def before_snap_off(reference: Readings, at: Floats, snap: Occurrence, window: float) -> Booleans:
+    """Whether each place lies within the window at the earlier one of two snap-offs.
 
     There the readings grow without bound. What both sweeps still read far beyond it does count.
     """
     ends = [x for x in (snap.reference, snap.candidate) if x is not None]
     if not ends:
-        return np.zeros(len(foot_x), dtype=bool)
+        return np.zeros(len(at), dtype=bool)
     sign = direction(reference)
-    ahead = min(sign * np.array(ends)) - sign * foot_x
-    return np.asarray(np.abs(ahead) < window * np.ptp(reference.values("foot_x")))
+    ahead = min(sign * np.array(ends)) - sign * at
+    return np.asarray(np.abs(ahead) < window * np.ptp(reference.running_values))
 
 
 def rms(errors: Floats) -> Floats:

@@ -15,7 +15,7 @@ from compare.align.offset import (
     without_offset,
 )
 from compare.align.order import RowOrder, in_order
-from compare.align.stations import Alignment, align
+from compare.align.stations import Alignment, align, check_same_way
 from compare.align.units import check_unit_of_length, in_units_of
 from compare.measure.disagreement import SweepPair, disagreements
 from compare.sense.noise import scales
@@ -89,13 +89,13 @@ class Measurement(SweepPair[Readings]):
 
     def beyond(self) -> list[str]:
         """Events of the reference that lie beyond the stretch that the candidate covers."""
-        foot_x = self.candidate.values("foot_x")
+        along = self.candidate.running_values
         return [
             name
             for name, event in self.events.items()
             if event.reference is not None
             and event.candidate is None
-            and not np.min(foot_x) <= event.reference <= np.max(foot_x)
+            and not np.min(along) <= event.reference <= np.max(along)
         ]
 
     def made_by_noise(self) -> list[str]:
@@ -113,7 +113,7 @@ class Measurement(SweepPair[Readings]):
         found = []
         for name, _, lacks, at in self._one_sided():
             sweep = self.reference if lacks == "reference" else self.candidate
-            nearest = np.argmin(np.abs(sweep.values("foot_x") - at))
+            nearest = np.argmin(np.abs(sweep.running_values - at))
             found += [] if sweep.trusted[nearest] else [name]
         return found
 
@@ -142,6 +142,9 @@ def measure(
     """Measure how far `candidate` is from `reference`, from their readings alone."""
     for which, sweep in (("reference", reference), ("candidate", candidate)):
         check_size(which, sweep)
+    check_same_way(reference, candidate)
+    if offset != 0:
+        reference.require_sweep("an offset")
     scales(reference)
     records = {"reference": inspect_record(reference)}
     if records["reference"].retreats:
@@ -149,7 +152,7 @@ def measure(
             f"rows of the reference ({reference.source})",
             next(records["reference"].defects()),
             "in the order of the motion",
-            "sort them by foot_x, or compare one sweep at a time",
+            f"sort them by {reference.running}, or compare one sweep at a time",
         )
     candidate = _held_alike(reference, candidate)
     candidate, records["candidate"], order = in_order(reference, candidate)

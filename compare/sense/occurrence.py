@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 
 @dataclass(frozen=True)
 class Occurrence:
-    """Where something happens in both sweeps [length]; None where it does not."""
+    """Where along both sweeps something happens; None where it does not."""
 
     reference: float | None
     candidate: float | None
@@ -13,13 +13,13 @@ class Occurrence:
 
     @property
     def difference(self) -> float | None:
-        """Candidate less reference [length]."""
+        """Candidate less reference."""
         if self.reference is None or self.candidate is None:
             return None
         return self.candidate - self.reference
 
     def agrees(self, tolerance: float) -> bool:
-        """Whether it happens in neither sweep, or at nearly the same foot position in both."""
+        """Whether it happens in neither sweep, or at nearly the same place in both."""
         if self.difference is None:
             return self.reference is None and self.candidate is None
         return abs(self.difference) <= tolerance + self.uncertainty

@@ -48,7 +48,7 @@ class Record:
         """What is wrong, most serious first."""
         rows = len(self.missing)
         if self.retreats:
-            yield f"rows out of order: {self.retreats} of {rows - 1} steps of foot_x lead back"
+            yield f"rows out of order: {self.retreats} of {rows - 1} steps lead back"
         for name, what in (
             ("missing", "lack a number"),
             ("dropped", "are filled with zeros amid contact"),
@@ -78,7 +78,8 @@ class Record:
 
 def inspect_record(readings: Readings) -> Record:
     """Look for defects that no contact can cause."""
-    values = np.stack([readings.values(name) for name in SENSED], axis=1)
+    names = readings.running, *CLAMP_READINGS
+    values = np.stack([readings.values(name) for name in names], axis=1)
     finite = np.isfinite(values).all(axis=1)
     failed = np.zeros(len(values), dtype=bool)
     if "status" in readings.table:
@@ -98,7 +99,7 @@ def inspect_record(readings: Readings) -> Record:
             if at_limit.any():
                 cut.append(name)
             clipped |= at_limit
-    foot_x = readings.values("foot_x")
+    foot_x = readings.running_values
     steps = np.abs(np.diff(foot_x))
     median = float(np.median(steps))
     return Record(
@@ -141,8 +142,8 @@ def without_dropouts(readings: Readings) -> Readings:
 
 
 def direction(readings: Readings) -> float:
-    """Sign of the foot's motion along x, from the order of the rows."""
-    foot_x = readings.values("foot_x")
+    """Which way the places along the sweep run, from the order of the rows."""
+    foot_x = readings.running_values
     rows = np.arange(len(foot_x)) - (len(foot_x) - 1) / 2
     return 1.0 if rows @ (foot_x - foot_x.mean()) > 0 else -1.0
 
@@ -180,7 +181,7 @@ def _clipped(column: Floats, moving: Booleans, loaded: float) -> Booleans:
 
 def _retreats(readings: Readings, median: float) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
-    x = direction(readings) * readings.values("foot_x")
+    x = direction(readings) * readings.running_values
     back = float(np.max(np.maximum.accumulate(x) - x))
     least, most = (fraction * float(np.ptp(x)) for fraction in _BACK)
     if back <= min(max(_JITTER * median, least), most):

@@ -15,7 +15,7 @@ _ALIKE = 1e-9  # of the span of all: two values that are nearer to each other ar
 
 
 def locate_transitions(readings: Readings, judged: Classification) -> Mapping[str, float | None]:
-    """Foot positions of the transitions [length]; None where a transition does not occur.
+    """Places along the sweep of the transitions; None where a transition does not occur.
 
     Phase B is the one stretch that agrees best with the judged phases, so that single stations that
     noise put on the wrong side move nothing. At its ends the criterion (26), which is zero inside,
@@ -25,7 +25,7 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     mass loads the clamp without contact, it is where the source recorded it, and stations before it
     and behind the snap-off show no phase.
     """
-    foot_x = readings.values("foot_x")
+    at = readings.running_values
     moving = "motion" in readings.provenance
     loaded = np.isin(judged.phase, ("tip", "tangent"))
     touching = np.flatnonzero(loaded & _in_contact(readings) if moving else loaded)
@@ -34,49 +34,49 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
         return found
     moment = readings.values("moment_z")
     if moving:
-        found["first_contact"] = _recorded(readings, foot_x)
+        found["first_contact"] = _recorded(readings, at)
     elif touching[0] > 0:
-        found["first_contact"] = _zero(foot_x, moment, touching[:2], touching[0] - 1, touching[0])
+        found["first_contact"] = _zero(at, moment, touching[:2], touching[0] - 1, touching[0])
     begin, end = _best_stretch(np.where(judged.phase[touching] == "tangent", 1, -1))
     inside = touching[begin:end]
     before, after = touching[:begin], touching[end:]
     if inside.size and before.size:
-        found["phase_b_start"] = _limit(foot_x, judged, before[-_FIT:], inside[:_FIT])
+        found["phase_b_start"] = _limit(at, judged, before[-_FIT:], inside[:_FIT])
     if inside.size and after.size:
-        found["phase_b_end"] = _limit(foot_x, judged, after[:_FIT], inside[-_FIT:])
+        found["phase_b_end"] = _limit(at, judged, after[:_FIT], inside[-_FIT:])
     return found
 
 
 def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, float]:
-    """Foot position of the snap-off and how far it may be off [length].
+    """Where along the sweep the snap-off is, and how far it may be off.
 
     The source's own value where it located one; else half-way between the last station in contact
     and the free one after it, give or take half a step. None if the sweep ends in contact.
     """
     if readings.snap_off is not None:
         return readings.snap_off, 0.0
-    foot_x = readings.values("foot_x")
+    at = readings.running_values
     touching = np.flatnonzero(np.isin(judged.phase, ("tip", "tangent")))
-    if touching.size == 0 or touching[-1] + 1 == len(foot_x):
+    if touching.size == 0 or touching[-1] + 1 == len(at):
         return None, 0.0
-    last, free = foot_x[touching[-1]], foot_x[touching[-1] + 1]
+    last, free = at[touching[-1]], at[touching[-1] + 1]
     return float(last + free) / 2, float(abs(last - free)) / 2
 
 
 def _in_contact(readings: Readings) -> Booleans:
     """Stations from the first contact to the snap-off, as far as the source recorded them."""
-    foot_x = readings.values("foot_x")
-    sign = np.sign(foot_x[-1] - foot_x[0])
+    at = readings.running_values
+    sign = np.sign(at[-1] - at[0])
     first = readings.provenance.get("events", {}).get("first_contact")
-    begin = sign * foot_x[0] if first is None else sign * first
-    end = sign * foot_x[-1] if readings.snap_off is None else sign * readings.snap_off
-    return np.asarray((begin <= sign * foot_x) & (sign * foot_x <= end))
+    begin = sign * at[0] if first is None else sign * first
+    end = sign * at[-1] if readings.snap_off is None else sign * readings.snap_off
+    return np.asarray((begin <= sign * at) & (sign * at <= end))
 
 
-def _recorded(readings: Readings, foot_x: Floats) -> float | None:
+def _recorded(readings: Readings, at: Floats) -> float | None:
     """The first contact by the source's own word, if a station comes before it."""
     place = readings.provenance.get("events", {}).get("first_contact")
-    first, last = foot_x[0], foot_x[-1]
+    first, last = at[0], at[-1]
     return None if place is None or (first - place) * (place - last) < 0 else float(place)
 
 
@@ -88,18 +88,18 @@ def _best_stretch(votes: Integers) -> tuple[int, int]:
     return int(np.argmin(sums[: end + 1])), end
 
 
-def _limit(foot_x: Floats, judged: Classification, tip: Integers, tangent: Integers) -> float:
+def _limit(at: Floats, judged: Classification, tip: Integers, tangent: Integers) -> float:
     """A limit of Phase B between the neighbouring stations `tip` and `tangent`."""
     ends = (tip[-1], tangent[0]) if tip[-1] < tangent[0] else (tip[0], tangent[-1])
-    outside = _zero(foot_x, judged.criterion, tip, *ends)
-    inside = _zero(foot_x, judged.shortfall, tangent, *ends)
+    outside = _zero(at, judged.criterion, tip, *ends)
+    inside = _zero(at, judged.shortfall, tangent, *ends)
     return float(outside + inside) / 2
 
 
-def _zero(foot_x: Floats, values: Floats, stations: Integers, one: int, other: int) -> float:
+def _zero(at: Floats, values: Floats, stations: Integers, one: int, other: int) -> float:
     """Where `values` through `stations` vanish, between the stations `one` and `other`."""
-    low, high = sorted((foot_x[one], foot_x[other]))
-    # Foot position as a polynomial in the value: its constant term is the zero.
+    low, high = sorted((at[one], at[other]))
+    # The place as a polynomial in the value: its constant term is the zero.
     order = len(stations) - 1
     monotone = np.all(np.diff(values[stations]) > 0) or np.all(np.diff(values[stations]) < 0)
     span = np.ptp(values[stations])
@@ -107,5 +107,5 @@ def _zero(foot_x: Floats, values: Floats, stations: Integers, one: int, other: i
         return float(low + high) / 2
     if np.abs(np.diff(values[stations])).min() < _ALIKE * span:  # no polynomial goes through them
         return float(low + high) / 2
-    zero = np.polynomial.Polynomial.fit(values[stations], foot_x[stations], order)(0.0)
+    zero = np.polynomial.Polynomial.fit(values[stations], at[stations], order)(0.0)
     return float(np.clip(zero, low, high))

@@ -10,7 +10,7 @@ from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
 from compare.show.document import Block, Document, Table, Text, Tile, Verdict, sections
 from compare.show.numbers import place, quantity, sentence, short, words
-from compare.show.style import PHASE_LETTERS
+from compare.show.style import ALONG, PHASE_LETTERS
 
 _BULKY = ("contour", "events", "joints", "path")  # of a source's provenance; they are drawn instead
 _BEAM = ("length", "flexural_rigidity", "radius")
@@ -19,14 +19,11 @@ _OF_LARGEST = "of the reading's largest magnitude"
 _LIMITED = {
     "snap_off_window": "of the sweep's length",
     "phase_agreement": "of the stations",
-    "transition": "L",
-    "snap_off": "L",
-    "lateness": "L",
     "contact": "L",
-    "event": "L",
     "untrusted": "of the stations",
 }
 """What a limit is a number of; all others are of a reading's largest magnitude."""
+_PLACES = ("transition", "snap_off", "lateness", "event")  # of places along the sweep
 
 
 def comparison_document(
@@ -71,12 +68,12 @@ def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -
     )
 
 
-def sizes(found: Comparison | SpatialComparison, worst: str, where: str) -> Iterator[Tile]:
+def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
     """How large the worst disagreement is."""
     one = found.disagreement[worst]
     if not one.stations:
         return
-    at = where.format(place(one.at / found.reference.beam.length))
+    at = ALONG[found.reference.running].at.format(place(one.at / found.reference.running_unit[0]))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
     yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
 
@@ -85,7 +82,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
     """How far apart the two are, reading by reading and by phase, if any station shows it."""
     if not found.stations:
         return
-    beam = found.reference.beam
+    beam, (size, along) = found.reference.beam, found.reference.running_unit
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
     rows = []
@@ -97,7 +94,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
         if isinstance(found, SpatialComparison):
             row["allowed"] = short(found.tolerances.of(name, "rms"))
         row |= {f"rms, {PHASE_LETTERS[p]}": short(one.rms_by_phase.get(p)) for p in phases}
-        row |= {"max": short(one.max), "max at / L": place(one.at / beam.length)}
+        row |= {"max": short(one.max), f"max at / {along}": place(one.at / size)}
         if isinstance(found, Comparison):
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})
@@ -113,12 +110,12 @@ def places_table(
     found: Comparison | SpatialComparison, caption: str, events: Mapping[str, Occurrence]
 ) -> Table:
     """Where events are in both sweeps."""
-    length = found.reference.beam.length
+    size, _ = found.reference.running_unit
     rows = []
     for name, pair in events.items():
         known = (pair.reference, pair.candidate, pair.difference)
-        ours, theirs, apart = (None if x is None else x / length for x in known)
-        wide = short(pair.uncertainty / length) if pair.uncertainty else ""
+        ours, theirs, apart = (None if x is None else x / size for x in known)
+        wide = short(pair.uncertainty / size) if pair.uncertainty else ""
         rows.append((words(name), place(ours), place(theirs), short(apart), wide))
     sources = found.reference.source, found.candidate.source
     return Table(caption, ("", *sources, "difference", "uncertainty"), rows)
@@ -127,8 +124,9 @@ def places_table(
 def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:
     """The limits of a verdict, what they are numbers of, and why they are as large as they are."""
     allowed: dict[str, Limit] = found.tolerances.limits()
+    units = _LIMITED | dict.fromkeys(_PLACES, found.reference.running_unit[1])
     rows = [
-        (words(name), f"{limit:g}", _LIMITED.get(name, _OF_LARGEST), limit.reason)
+        (words(name), f"{limit:g}", units.get(name, _OF_LARGEST), limit.reason)
         for name, limit in allowed.items()
     ]
     head = ("tolerance", "limit", "unit", "reason")

@@ -37,7 +37,7 @@ from compare.show.figures.readings import (
     validation_picture,
 )
 from compare.show.numbers import percent, place, quantity, sentence, short, words
-from compare.show.style import PHASE_LETTERS, SYMBOLS
+from compare.show.style import ALONG, PHASE_LETTERS, SYMBOLS, Along
 from compare.show.validity import validation_lines, validation_tables
 from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
 
@@ -89,9 +89,9 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
     """The numbers that matter."""
-    yield from sizes(comparison, worst_reading(comparison), "foot at {} L")
-    apart, length = comparison.snap_off.difference, comparison.reference.beam.length
-    shift = "none" if apart is None else short(apart / length, " L")
+    yield from sizes(comparison, worst_reading(comparison))
+    apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
+    shift = "none" if apart is None else short(apart / size, f" {unit}")
     yield Tile("snap-off apart", shift, "candidate less reference")
     alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
     if alike is not None:
@@ -148,12 +148,13 @@ def _validation(comparison: Comparison) -> Iterator[Block]:
 
 def _apart(comparison: Comparison) -> Iterator[Block]:
     yield from apart_table(comparison)
-    shows = "{} of both models over the foot position, and their difference"
+    over = _along(comparison).name
+    shows = f"{{}} of both models over the {over}, and their difference"
     yield Picture(
         "reading",
         {shows.format(name): partial(reading_panel, comparison, name) for name in SYMBOLS},
         "Clamp force and moment, and the contact's arc length reconstructed from them, over the "
-        f"foot's position. Line: {comparison.reference.source}. Dots: "
+        f"{over}. Line: {comparison.reference.source}. Dots: "
         f"{comparison.candidate.source}. Shaded: the reference's phases. Below: candidate less "
         "reference, in the same unit.",
         "panels",
@@ -188,7 +189,7 @@ def _sweep(comparison: Comparison, film: Film | None) -> Iterator[Block]:
 
 
 def _phases(comparison: Comparison) -> Iterator[Block]:
-    shows = "Phase B's criterion and the contact's arc length over the foot position"
+    shows = f"Phase B's criterion and the contact's arc length over the {_along(comparison).name}"
     yield Picture(
         "phases",
         {shows: partial(phase_criterion, comparison)},
@@ -197,8 +198,8 @@ def _phases(comparison: Comparison) -> Iterator[Block]:
         "units of the readings' own noise.",
     )
     caption = (
-        "Foot positions / L where one phase gives way to the next, found from the clamp readings "
-        "alone"
+        f"{_along(comparison).places} where one phase gives way to the next, found from the clamp "
+        "readings alone"
     )
     transitions = places_table(comparison, caption, comparison.transitions)
     absent = [Text(sentence(line), aside=True) for line in absent_transitions(comparison)]
@@ -221,8 +222,8 @@ def _confusions(comparison: Comparison) -> Iterator[Table]:
 def _snap_off(comparison: Comparison) -> Iterator[Block]:
     found = comparison.snap_off
     caption = (
-        "Foot position / L where the vibrissa lets go: as its source recorded it, else between the "
-        "last station in contact and the next"
+        f"{_along(comparison).places} where the vibrissa lets go: as its source recorded it, else "
+        "between the last station in contact and the next"
     )
     yield places_table(comparison, caption, {"snap-off": found})
     if found.reference is None and found.candidate is None:
@@ -258,6 +259,11 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
         "middle",
     )
     yield Beside([drawn, convergence_table(budget.convergence)])
+
+
+def _along(comparison: Comparison) -> Along:
+    """What is said of the column over which the sweeps run."""
+    return ALONG[comparison.reference.running]
 
 
 def _offset(comparison: Comparison) -> str:

@@ -307,7 +307,7 @@ def differences(found: SideBySide) -> Figure:
             table = one.alignment.table
             error = table[f"{name}_candidate"] - table[f"{name}_reference"]
             ax.plot(
-                table["foot_x"].to_numpy() / first.reference.beam.length,
+                table["at"].to_numpy() / first.reference.running_unit[0],
                 error.to_numpy() / one.disagreement[name].scale,
                 color=style.SERIES[i % len(style.SERIES)],
                 linestyle=style.LINE_STYLES[i % len(style.LINE_STYLES)],

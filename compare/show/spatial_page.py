@@ -77,7 +77,7 @@ def spatial_verdict(comparison: SpatialComparison) -> Verdict:
 
 def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> Iterator[Tile]:
     """The numbers that matter."""
-    yield from sizes(comparison, comparison.largest, "foot {} L on its way")
+    yield from sizes(comparison, comparison.largest)
     contact = comparison.contact
     if contact.stations:
         where = f"{short(comparison.tolerances.contact)} allowed, at {contact.stations} stations"

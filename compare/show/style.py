@@ -3,6 +3,8 @@
 The colours are Okabe and Ito's: every kind of colour vision distinguishes them, and so does print.
 """
 
+from typing import NamedTuple
+
 INK, PAPER = "#000000", "#ffffff"
 GREY, FAINT, BODY = "#555555", "#999999", "#dddddd"
 BLUE, ORANGE, GREEN, PINK = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -33,6 +35,24 @@ UNITS = {
     "contact_arc_length": "$L$",
 }
 FOOT = "foot $x_0$ / $L$"
+
+
+class Along(NamedTuple):
+    """What is said of a column over which sweeps run."""
+
+    axis: str
+    at: str  # of one place
+    name: str
+    places: str
+
+
+ALONG = {
+    "foot_x": Along(FOOT, "foot at {} L", "foot position", "Foot positions / L"),
+    "clamp_angle": Along(
+        r"clamp angle $\beta$ / rad", "clamp at {} rad", "clamp angle", "Clamp angles / rad"
+    ),
+    "travel": Along("travel / $L$", "foot {} L on its way", "travel", "Travel / L"),
+}
 
 SMALL, NORMAL, LARGE = 9, 10, 11
 """Sizes of text in points."""

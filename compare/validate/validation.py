@@ -264,7 +264,7 @@ def _uncounted(
     window: float,
 ) -> tuple[Booleans, Booleans, Sensitivities]:
     """Stations next to the snap-off, those without a sensitivity, and what is known at all."""
-    foot_x = table["foot_x"].to_numpy()
+    foot_x = table["at"].to_numpy()
     here = reach.at(foot_x)
     unknown = np.isnan(here.readings).any(axis=(0, 1))
     sweep = float(np.ptp(found.reference.values("foot_x")))
@@ -378,7 +378,7 @@ def _table(table: pd.DataFrame, error: Floats, spread: Spread) -> pd.DataFrame:
     rows = len(table)
     return pd.DataFrame(
         {
-            "foot_x": np.tile(table["foot_x"], len(CLAMP_READINGS)),
+            "foot_x": np.tile(table["at"], len(CLAMP_READINGS)),
             "phase": np.tile(table["phase"], len(CLAMP_READINGS)),
             "reading": np.repeat(CLAMP_READINGS, rows),
             "error": error.ravel(),

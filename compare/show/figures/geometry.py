@@ -17,7 +17,7 @@ from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import draw, foot, on_vibrissa
+from compare.show.figures.over_foot import draw, on_vibrissa
 from compare.show.numbers import quantity
 
 _SHAPES = 24  # drawn of each sweep
@@ -43,10 +43,9 @@ def geometry(comparison: Comparison) -> Figure:
         )
         ax.set_ylabel("$y$ / $L$")
         ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
-    foot_x, beam = foot(comparison.reference), comparison.reference.beam
+    beam = comparison.reference.beam
     size = f"$L$ = {quantity(beam.length, 'length', beam)}; " if beam.si else ""
-    direction = "right" if foot_x[-1] > foot_x[0] else "left"
-    axes[-1].set_xlabel(f"$x$ / $L$   ({size}the foot moves to the {direction} along $y = 0$)")
+    axes[-1].set_xlabel(f"$x$ / $L$   ({size}{_way(comparison.reference)})")
     handles = [
         *phase_handles(),
         Line2D([], [], **_OBJECT, label="object"),
@@ -55,6 +54,16 @@ def geometry(comparison: Comparison) -> Figure:
     key_below(figure, handles, 5)
     at_equal_scales(figure, axes, style.PAGE_WIDTH)
     return figure
+
+
+def _way(readings: Readings) -> str:
+    """How the clamp goes, in words."""
+    direction = "right" if readings.runs_right else "left"
+    return {
+        "foot_x": f"the foot moves to the {direction} along $y = 0$",
+        "clamp_angle": f"the foot stands, its clamp turns to the {direction}",
+        "travel": f"foot and clamp move to the {direction}",
+    }[readings.running]
 
 
 def reconstruction(

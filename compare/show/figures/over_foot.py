@@ -45,8 +45,8 @@ def dots(comparison: Comparison) -> dict[str, Any]:
 
 
 def foot(readings: Readings) -> Floats:
-    """Foot positions as they are drawn."""
-    return readings.values("foot_x") / readings.beam.length
+    """Places along the sweep as they are drawn."""
+    return readings.running_values / readings.running_unit[0]
 
 
 def unit(readings: Readings | SpatialReadings, name: str) -> float:
@@ -70,9 +70,10 @@ def reading_label(readings: Readings, name: str) -> str:
 
 
 def foot_label(readings: Readings) -> str:
-    """What an axis of foot positions is called."""
+    """What an axis of places along the sweep is called."""
     beam = readings.beam
-    return style.FOOT + (f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else "")
+    own = f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else ""
+    return style.ALONG[readings.running].axis + own
 
 
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
@@ -131,7 +132,7 @@ def with_fold(readings: Readings, phase: Words, x: Floats, y: Floats) -> tuple[F
     """
     if readings.snap_off is None:
         return x, y
-    end = readings.snap_off / readings.beam.length
+    end = readings.snap_off / readings.running_unit[0]
     way = np.sign(x[-1] - x[0])
     touching = np.flatnonzero(np.isin(phase, ("tip", "tangent")) & (way * (end - x) > 0))
     if not touching.size:

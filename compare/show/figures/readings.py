@@ -57,10 +57,10 @@ def readings(comparison: Comparison) -> Figure:
 def around_snap_off(comparison: Comparison, name: str) -> Figure:
     """Draw a reading around the snap-off, of which one sweep at least has one."""
     figure = reading_panel(comparison, name)
-    length = comparison.reference.beam.length
+    size, _ = comparison.reference.running_unit
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
     places = ((colour, getattr(comparison.snap_off, side)) for side, colour in _COLOURS.items())
-    known = {colour: place / length for colour, place in places if place is not None}
+    known = {colour: place / size for colour, place in places if place is not None}
     for ax in figure.axes:
         ax.set_xlim(min(known.values()) - half, max(known.values()) + half)
         ax.xaxis.set_major_locator(MaxNLocator(4))
@@ -97,25 +97,26 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
 
 
 def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
-    """Foot positions and candidate less reference, both in units of the beam."""
+    """Places along the sweep and candidate less reference, both in units of the beam."""
     table, beam = comparison.alignment.table, comparison.reference.beam
-    foot_x = table["foot_x"].to_numpy() / beam.length
+    at = table["at"].to_numpy() / comparison.reference.running_unit[0]
     if name in CLAMP_READINGS:
         apart = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy()
-        return foot_x, apart / unit(comparison.reference, name)
+        return at, apart / unit(comparison.reference, name)
     if len(table) < 2:  # no sweep
-        return foot_x, np.full(len(table), np.nan)
+        return at, np.full(len(table), np.nan)
+    stations = comparison.candidate.table.iloc[table["station"]].reset_index(drop=True)
     found, expected = (
         reconstruct(
             replace(
                 comparison.reference,
-                table=table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}),
+                table=stations.assign(**{r: table[f"{r}_{side}"] for r in CLAMP_READINGS}),
             )
         )
         for side in ("candidate", "reference")
     )
     s, expected_s = (one[name].to_numpy() / beam.length for one in (found, expected))
-    return foot_x, on_vibrissa(s) - on_vibrissa(expected_s)
+    return at, on_vibrissa(s) - on_vibrissa(expected_s)
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
@@ -135,7 +136,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
     axes[1].set_xlabel(
         f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"
     )
-    length = comparison.reference.beam.length
+    size, _ = comparison.reference.running_unit
     for place in comparison.transitions.values():
         for where, colour in (
             (place.reference, style.REFERENCE),
@@ -143,7 +144,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
         ):
             if where is not None:
                 for ax in axes:
-                    ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
+                    ax.axvline(where / size, color=colour, linestyle=":", linewidth=1)
     key_below(figure, axes[0], 2)
     return figure
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from analytic import CLAMP_READINGS, Beam, InputError, Readings
-from compare.align.stations import Alignment, align, interpolant
+from compare.align.stations import Alignment, align, check_same_way, interpolant
 from tests.compare.synthetic import BEAM, classified
 
 TIP, TANGENT = "tip", "tangent"
@@ -75,7 +75,7 @@ def test_each_piece_is_interpolated_by_itself(reference, way):
     """Up to the last station before a border, which counts, and not the first behind it."""
     candidate = made(BETWEEN[::way])
     found = paired(candidate, reference)
-    x = found.table["foot_x"].to_numpy()
+    x = found.table["at"].to_numpy()
     for name in CLAMP_READINGS:
         there = found.table[f"{name}_reference"]
         np.testing.assert_allclose(there, own_spline(name, x), rtol=1e-12)
@@ -100,7 +100,7 @@ def test_other_numbers_of_stations(stations):
     found = paired(made(x))
     assert sum(found.counts.values()) == stations
     for name in CLAMP_READINGS:
-        expected = own_spline(name, found.table["foot_x"].to_numpy())
+        expected = own_spline(name, found.table["at"].to_numpy())
         np.testing.assert_allclose(found.table[f"{name}_reference"], expected, rtol=1e-12)
 
 
@@ -155,7 +155,10 @@ def test_sweeps_that_have_nothing_in_common():
     with pytest.raises(InputError):
         paired(made(X - 3))
     with pytest.raises(InputError):
-        paired(replace(made(X), beam=Beam(length=2.0, flexural_rigidity=3.0001, radius=0.01)))
+        check_same_way(
+            REFERENCE,
+            replace(made(X), beam=Beam(length=2.0, flexural_rigidity=3.0001, radius=0.01)),
+        )
 
 
 def test_what_is_interpolated_by():

@@ -32,7 +32,7 @@ def test_slopes_are_of_one_phase_each():
     x = np.linspace(1.0, -0.5, 14)
     phase = np.repeat(["tip", "tangent", "tip"], [4, 7, 3])
     values = np.stack([np.sin(k * x) + (phase == "tangent") for k in (1, 2, 3)])
-    found = slopes(pd.DataFrame({"foot_x": x, "phase": phase}), values)
+    found = slopes(pd.DataFrame({"at": x, "phase": phase}), values)
     for here in (slice(0, 4), slice(4, 11)):
         order = np.argsort(x[here])
         spline = CubicSpline(x[here][order], values[:, here][:, order], axis=-1)
@@ -50,7 +50,7 @@ def test_a_fault_of_a_small_size_is_its_signature():
     assert sum(fault.change is not None for fault in faults) >= 13
     for fault in faults:
         solved_at = fault.change and fault.change(size)
-        acted = fault.acts and fault.acts(size, true, table["foot_x"].to_numpy()) - true
+        acted = fault.acts and fault.acts(size, true, table["at"].to_numpy()) - true
         for added in (solved_at, acted):
             if added is not None:  # next to the borders of phases slopes are one-sided
                 off = np.nanquantile(np.abs(added - size * fault.signature), 0.9)

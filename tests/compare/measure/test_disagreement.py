@@ -29,7 +29,7 @@ NEVER = Occurrence(None, None)
 
 
 def disagree(snap=NEVER, window=0.05, **errors: np.ndarray) -> dict[str, Disagreement]:
-    columns = {"foot_x": X[:8], "phase": PHASE, "contact_arc_length": 2 - X[:8]}
+    columns = {"at": X[:8], "phase": PHASE, "contact_arc_length": 2 - X[:8]}
     for name in CLAMP_READINGS:
         columns[f"{name}_reference"] = REFERENCE.values(name)[:8]
         error = SCALES[name] * errors.get(name, np.zeros(8))
