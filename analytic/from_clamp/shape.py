@@ -113,6 +113,7 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
     steps = np.hypot(np.diff(x, prepend=x[:, :1]), np.diff(y, prepend=y[:, :1]))
     s = np.minimum(np.cumsum(steps, axis=1), beam.length)
+    y = y - readings.foot_y[:, None]
     kappa = (force_y * (x - foot_x) - force_x * y - moment) / beam.rigidity_at(s)
     kappa[:, _STEPS + 1 :] = 0.0
     return np.asarray(kappa + beam.curvature_at(s))

@@ -309,6 +309,26 @@ class Case(Shown):
         ends = replace(self.sweep, stations=number, start=start, stop=stop)
         return replace(self, sweep=ends)
 
+    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Case":
+        """The case over its own stations, whatever else is changed of it then, or beside them.
+
+        Parameters
+        ----------
+        x : float
+            By how much the foot is farther right at each station [length].
+        angle : float
+            By how much the clamp leans more to the left there [rad].
+
+        Returns
+        -------
+        Case
+            With all else as it is.
+        """
+        if not isinstance(self.sweep, Sweep):
+            return replace(self, sweep=self.sweep.shifted(x, angle))
+        start, stop = (float(foot) + x for foot in self.foot_x[[0, -1]])
+        return replace(self.between(start, stop), clamp_angle=self.clamp_angle + angle)
+
     @property
     def radius(self) -> float:
         """The beam's radius, a cone's at the clamp, in units of its length."""

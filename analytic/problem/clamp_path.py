@@ -51,6 +51,10 @@ class TurningWay(ClampWay):
     def mirrored(self) -> "TurningWay":
         """The mirror image, x to -x."""
 
+    @abstractmethod
+    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "TurningWay":
+        """The same way with the foot elsewhere, in a clamp that leans more [length, rad]."""
+
 
 @dataclass(frozen=True)
 class Sweep(ClampWay):
@@ -158,6 +162,10 @@ class Whisk(TurningWay):
         """The mirror image, x to -x."""
         return Whisk(0.0 - self.foot_x, 0.0 - self.start, 0.0 - self.stop, self.stations)
 
+    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Whisk":
+        """The same way with the foot elsewhere, in a clamp that leans more [length, rad]."""
+        return Whisk(self.foot_x + x, self.start + angle, self.stop + angle, self.stations)
+
 
 @dataclass(frozen=True)
 class ClampPath(TurningWay):
@@ -246,3 +254,8 @@ class ClampPath(TurningWay):
         """The mirror image, x to -x."""
         x, angle = (-np.array(values) for values in (self.foot_x, self.clamp_angle))
         return ClampPath(x.tolist(), self.foot_y, angle.tolist())
+
+    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "ClampPath":
+        """The same way with the foot elsewhere, in a clamp that leans more [length, rad]."""
+        foot, leans = np.array(self.foot_x) + x, np.array(self.clamp_angle) + angle
+        return ClampPath(foot.tolist(), self.foot_y, leans.tolist())

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from analytic.problem.along import Along
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import TurningWay
 
 
 @dataclass(frozen=True)
@@ -67,9 +68,10 @@ def _softer(case: Case, by: float) -> Case:
     return replace(case, clamp_stiffness=1 / compliance if compliance > 0 else math.inf)
 
 
-def _farther(case: Case, by: float) -> Case:
-    start, stop = (float(x) + by for x in case.foot_x[[0, -1]])
-    return case.between(start, stop)
+def _leaning(case: Case, by: float) -> Case:
+    if isinstance(case.sweep, TurningWay):
+        return case.shifted(angle=by)
+    return replace(case, clamp_angle=case.clamp_angle + by)
 
 
 def _length(case: Case) -> float:
@@ -115,9 +117,9 @@ QUANTITIES: dict[str, Quantity] = {
         "rad",
         lambda case: case.clamp_angle,
         lambda case: 1.0,
-        lambda case, by: replace(case, clamp_angle=case.clamp_angle + by),
+        _leaning,
     ),
-    "foot_x": Quantity("m", lambda case: 0.0, _length, _farther),
+    "foot_x": Quantity("m", lambda case: 0.0, _length, Case.shifted),
     "height": Quantity(
         "m",
         lambda case: 0.0,

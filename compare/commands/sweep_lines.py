@@ -41,11 +41,12 @@ def _of_the_plane(readings: Readings) -> list[str]:
     table, snap_off = readings.table, readings.snap_off
     unsettled = readings.provenance.get("unsettled", {})
     parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
-    running = readings.running
-    unit, per = (" rad", 1.0) if running == "clamp_angle" else (" L", readings.beam.length)
-    place = 0.0 if snap_off is None else snap_off / per
+    size, unit = readings.running_unit
+    place = 0.0 if snap_off is None else snap_off / size
     parts.append(
-        "no snap-off" if snap_off is None else f"snap-off at {running} = {place:.4f}{unit}"
+        "no snap-off"
+        if snap_off is None
+        else f"snap-off at {readings.running} = {place:.4f} {unit}"
     )
     if "kinetic_share" in table:
         touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
@@ -73,11 +74,12 @@ def _untrusted(readings: Readings | SpatialReadings) -> list[str]:
     for name, group in readings.table.groupby("status", sort=False):
         if name in ("ok", "unsettled"):
             continue
-        ends = (group["foot_x"].iloc[i] / readings.beam.length for i in (0, -1))
+        size, unit = readings.running_unit
+        ends = (group[readings.running].iloc[i] / size for i in (0, -1))
         where = " to ".join(f"{x:.4f}" for x in ends)
         meaning = _MEANINGS.get(str(name), "")
         none = "; no readings" if group[list(CLAMP_READINGS)].isna().all(axis=None) else ""
-        said.append(f"{len(group)} {name} (foot_x {where} L{meaning}{none})")
+        said.append(f"{len(group)} {name} ({readings.running} {where} {unit}{meaning}{none})")
     return said
 
 

@@ -35,13 +35,11 @@ def variations(case: Case) -> dict[str, Readings]:
     thicker than the vibrissa, and one that is more curved towards the object may touch it twice: of
     those two the sweep is the exact one less what the opposite change does.
     """
-    start, stop = (float(x) for x in case.foot_x[[0, -1]])
-    # Nearby cases start a little elsewhere by default; all are swept over the same stations.
-    case = case.between(start, stop)
+    case = case.shifted()  # nearby cases start a little elsewhere by default
     beam, tip_radius = case.beam, QUANTITIES["tip_radius"].value(case)
     units = {name: quantity.unit(case) for name, quantity in QUANTITIES.items()}
     units |= {"radius": beam.radius, "tip_radius": -tip_radius}
-    if case.sweep.direction == "left":
+    if case.direction == "left":
         units["natural_curvature"] *= -1
 
     def swept(name: str) -> Readings:
@@ -74,8 +72,7 @@ def on_polygon(case: Case, points: int) -> Readings:
     left, right = case.reach
     length = case.beam.length
     vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
-    start, stop = (float(x) for x in case.foot_x[[0, -1]])
-    return solve_sweep(replace(case, profile=polygon(vertices)).between(start, stop))
+    return solve_sweep(replace(case.shifted(), profile=polygon(vertices)))
 
 
 def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:

@@ -72,8 +72,7 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
         flexural_rigidity=by_its_clamp(found),
         natural_curvature=found.natural_curvature,
     )
-    ends = float(case.foot_x[0]), float(case.foot_x[-1])
-    return replace(case, beam=beam).between(*ends)
+    return replace(case.shifted(), beam=beam)
 
 
 def _swept(

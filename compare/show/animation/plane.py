@@ -18,7 +18,7 @@ from analytic.problem.arrays import Floats, Words
 from compare.sense.phases import classify
 from compare.show.animation.film import Heading, framed, write_film
 from compare.show.figures.over_foot import foot, shade_phases, unit
-from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, REFERENCE, axis_label
+from compare.show.style import ALONG, BODY, CANDIDATE, FAINT, GREY, INK, REFERENCE, axis_label
 
 # Perceptually uniform and the same to every kind of colour vision; its palest end is left out,
 # for it would drown in the white around it.
@@ -51,7 +51,7 @@ def write_animation(
     near.add_keys()
     plots: Any = grid[1, 1].subgridspec(3, 1, hspace=0.12).subplots(sharex=True)
     curves = [_Curve(ax, one, other, name) for ax, name in zip(plots, CLAMP_READINGS, strict=True)]
-    plots[-1].set_xlabel(FOOT)
+    plots[-1].set_xlabel(ALONG[reference.running].axis)
     return write_film(heading, [far, near, *curves], chosen, touching, folder, advance)
 
 
@@ -60,7 +60,7 @@ class _Motion:
     """One sweep as it is drawn: lengths in L, forces in EI/L^2, moments in EI/L."""
 
     readings: Readings
-    foot_x: Floats  # shape (stations,)
+    along: Floats  # shape (stations,); where along the sweep they are
     x: Floats  # shape (stations, points); of the centreline, from clamp to tip
     y: Floats
     curvature: Floats  # its magnitude there
@@ -89,9 +89,9 @@ class _Motion:
             classify(readings).phase,
         )
 
-    def beside(self, foot_x: float) -> int:
-        """The station whose foot is nearest."""
-        return int(np.abs(self.foot_x - foot_x).argmin())
+    def beside(self, along: float) -> int:
+        """The station that is nearest."""
+        return int(np.abs(self.along - along).argmin())
 
     def beads(self, station: int) -> tuple[Floats, Floats]:
         """Points on the centreline at equal steps of arc length."""
@@ -134,9 +134,10 @@ class _View:
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
         ax.set_xlabel("$(x - x_0)$ / $L$" if follows else "$x$ / $L$", labelpad=1)
         ax.set_ylabel("$y$ / $L$")
-        seen = [m.x - m.foot_x[:, None] * follows for m in (one, other)]
+        seen = [m.x - m.x[:, :1] * follows for m in (one, other)]
         ax.set_xlim(*_padded([*seen, [] if follows else self._outline[:, 0]], 0.05), auto=True)
-        ax.set_ylim(_LOWEST, _HIGHEST, auto=True)
+        lowest = min(_LOWEST, float(np.nanmin(one.y)) + _LOWEST)
+        ax.set_ylim(lowest, _HIGHEST, auto=True)
         ax.set_aspect("equal", adjustable="datalim")
         self.moving: list[Artist] = [
             *([self._body] if follows else []),
@@ -156,7 +157,7 @@ class _View:
     def show(self, station: int) -> None:
         """Move to a station."""
         one, other = self._one, self._other
-        origin = one.foot_x[station] if self._follows else 0.0
+        origin = one.x[station, 0] if self._follows else 0.0
         x, y = one.x[station] - origin, one.y[station]
         ends = np.column_stack([x, y])
         self._line.set_segments(list(np.stack([ends[:-1], ends[1:]], axis=1)))
@@ -164,9 +165,11 @@ class _View:
         bent = one.curvature[station]
         self._line.set_array((bent[1:] + bent[:-1]) / 2)
         # Even where the stations of the two differ, each vibrissa stands on its own foot.
-        beads_x, beads_y = other.beads(other.beside(one.foot_x[station]))
+        beads_x, beads_y = other.beads(other.beside(one.along[station]))
         self._dots.set_data(beads_x - origin, beads_y)
-        self._clamp.set_data(x[0] + np.array([-0.06, 0.06]), [0.0, 0.0])
+        across = np.array([-0.06, 0.06])
+        leans = one.readings.clamp_angle[station]
+        self._clamp.set_data(x[0] + across * np.cos(leans), y[0] + across * np.sin(leans))
         contact = one.contact[station] - (origin, 0.0)
         self._contact.set_data(contact[:1], contact[1:])
         self._force.set_offsets(np.nan_to_num(contact))
@@ -182,22 +185,22 @@ class _Curve:
     def __init__(self, ax: Axes, one: _Motion, other: _Motion, name: str) -> None:
         self._one, self._other, self._name = one, other, name
         (self._line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
-        every = max(1, len(other.foot_x) // _MARKS)
+        every = max(1, len(other.along) // _MARKS)
         (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
         (self._head,) = ax.plot([], [], "o", color=INK, markersize=5)
-        ax.set_xlim(*_padded([one.foot_x, other.foot_x], 0.03))
+        ax.set_xlim(*_padded([one.along, other.along], 0.03))
         ax.set_ylim(*_padded([one.clamp[name], other.clamp[name]], 0.08))
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
         ax.set_ylabel(axis_label(name))
-        shade_phases(ax, one.foot_x, one.phase)
+        shade_phases(ax, one.along, one.phase)
         self.moving: list[Artist] = [self._line, self._dots, self._head]
 
     def show(self, station: int) -> None:
         """Grow up to a station."""
-        x, values = self._one.foot_x, self._one.clamp[self._name]
+        x, values = self._one.along, self._one.clamp[self._name]
         until = self._other.beside(x[station]) + 1
         self._line.set_data(x[: station + 1], values[: station + 1])
-        self._dots.set_data(self._other.foot_x[:until], self._other.clamp[self._name][:until])
+        self._dots.set_data(self._other.along[:until], self._other.clamp[self._name][:until])
         self._head.set_data(x[station : station + 1], values[station : station + 1])
 
 
