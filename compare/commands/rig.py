@@ -21,19 +21,22 @@ def rig(
 ) -> int:
     """Make readings of a rig's files, without their defects.
 
-    They are calibrated, zero and drift are taken off, and what is left out is counted. Each pass
+    They are calibrated, zero and drift are taken off, and what is left out is counted; a picture of
+    each pass is written first. What cannot be, as a contact called free, is refused. Each pass
     becomes a file; `calibrate`, `compare` and `reconstruct` take their folder.
     """
     from compare.commands import terminal
     from compare.measure.repeats import repeats
-    from compare.read.passes import read_passes, swept_alike
+    from compare.read.passes import look_at_passes, swept_alike, usable
     from compare.read.rig_file import read_rig
-    from compare.show.figures.readings import passes_picture
+    from compare.show.figures.readings import pass_picture, passes_picture
     from compare.show.passes import passes_document, passes_summary
 
-    passes = read_passes(files, read_rig(rig))
-    found = [repeats([one.readings for one in alike]) for alike in swept_alike(passes)]
+    passes = look_at_passes(files, read_rig(rig))
     with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
+        for one in passes:
+            terminal.keep(folder / f"{one.name}.png", pass_picture(one))
+        found = [repeats([one.readings for one in some]) for some in swept_alike(usable(passes))]
         terminal.show(*passes_summary(passes, found))
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))

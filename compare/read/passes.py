@@ -12,6 +12,13 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
+from compare.read.nonsense import (
+    check_ahead,
+    check_back,
+    check_channels,
+    check_drift,
+    check_free,
+)
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
 from compare.sense.record import Record, check_size, inspect_record
@@ -36,6 +43,10 @@ class Pass:
     # changes until after it [force, force length]. NaN if no such stretch is known.
     zero: dict[str, float]
     drift: dict[str, float]
+    raw: Floats  # shape (3, rows); the clamp readings before defects and zero were taken off
+    taken: Floats  # shape (3, rows); what was taken off, NaN if no free stretch is known
+    free: Booleans  # shape (rows,); the free stretches
+    fault: InputError | None  # why the pass is not to be used
 
     @property
     def kept(self) -> int:
@@ -48,7 +59,20 @@ class Pass:
 
 
 def read_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
-    """All passes in files, and in the files of folders."""
+    """All passes in files, and in the files of folders; refused if one cannot be used."""
+    return usable(look_at_passes(sources, rig))
+
+
+def usable(passes: list[Pass]) -> list[Pass]:
+    """The passes, none of which has a fault."""
+    for one in passes:
+        if one.fault is not None:
+            raise one.fault
+    return passes
+
+
+def look_at_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
+    """All passes in files, and in the files of folders, with their faults."""
     files = [path for source in sources for path in _files(source)]
     stems = [path.stem for path in files]
     for path in files:
@@ -78,6 +102,7 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
     for group in np.unique(groups):
         rows = raw[groups == group].reset_index(drop=True)
         if len(rows) >= _FEWEST:
+            check_back(rows["foot_x"].to_numpy(), path.stem)
             sweeps += read_sweeps(rows, rig.beam.build())
     if not sweeps:
         raise InputError(f"rows of {path}", len(raw), f"{_FEWEST} or more", "is it the right file?")
@@ -127,16 +152,28 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     for row, reading in zip(values, CLAMP_READINGS, strict=True):
         said = getattr(rig.columns, reading)
         row -= said.scale(reading) * said.zero
-    free = _free(raw.values("foot_x"), rig)
+    foot_x = raw.values("foot_x")
+    before = values
     zero, drift = np.full((2, len(CLAMP_READINGS)), np.nan)
-    if free is not None:
-        zero, drift, taken = _zero(raw.values("foot_x"), values, free, name)
-        values = values - taken
+    taken, free, fault = np.full_like(values, np.nan), np.zeros(len(foot_x), dtype=bool), None
+    try:
+        check_channels(np.stack([raw.values(reading) for reading in CLAMP_READINGS]), name)
+        check_ahead(foot_x, values, name)
+        stated = _free(foot_x, rig)
+        if stated:
+            free = np.any([*stated.values()], axis=0)
+            for which, here in stated.items():
+                check_free(which, getattr(rig.passes, which), foot_x, values, here, name)
+            zero, drift, taken = _zero(foot_x, values, stated, name)
+            values = values - taken
+            check_drift(drift, values, name)
+    except InputError as error:
+        fault = error
     table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
     check_size("pass", readings)
-    by_reading = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
+    of_zero, of_drift = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
     return Pass(
         name,
         direction,
@@ -145,23 +182,32 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         dropped,
         int(counts.get("out_of_order", 0)),
         record,
-        *by_reading,
+        of_zero,
+        of_drift,
+        before,
+        taken,
+        free,
+        fault,
     )
 
 
-def _free(foot_x: Floats, rig: Rig) -> tuple[Booleans, Booleans] | None:
-    """The stretches before and after the contact; None if none is stated."""
-    ends = (0, rig.passes.free_before), (-1, rig.passes.free_after)
-    stated = [np.abs(foot_x - foot_x[end]) <= stretch for end, stretch in ends if stretch > 0]
-    return (stated[0], stated[-1]) if stated else None
+def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
+    """The stretches before and after the contact that are stated."""
+    ends = {"free_before": 0, "free_after": -1}
+    stretches = {which: getattr(rig.passes, which) for which in ends}
+    return {
+        which: np.abs(foot_x - foot_x[ends[which]]) <= stretch
+        for which, stretch in stretches.items()
+        if stretch > 0
+    }
 
 
 def _zero(
-    foot_x: Floats, values: Floats, free: tuple[Booleans, Booleans], name: str
+    foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
 ) -> tuple[Floats, Floats, Floats]:
     """Zero and drift of each reading, and the line between the two stretches at every station."""
     means, places = [], []
-    for which, here in zip(("free_before", "free_after"), free, strict=True):
+    for which, here in free.items():
         known = here & np.isfinite(values).all(axis=0)
         if known.sum() < _FEWEST:
             raise InputError(
@@ -172,8 +218,8 @@ def _zero(
             )
         means.append(values[:, known].mean(axis=1))
         places.append(foot_x[known].mean())
-    drift = means[1] - means[0]
-    way = places[1] - places[0]
+    drift = means[-1] - means[0]
+    way = places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
     return means[0], drift, means[0][:, None] + drift[:, None] * share
 

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from analytic import CLAMP_READINGS, reconstruct
@@ -194,4 +196,31 @@ def passes_picture(passes: Sequence[Pass]) -> Figure:
             draw(ax, foot(one.readings), values, label=said, **marks)
         ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=style.SMALL)
     key_below(figure, axes["force_x"], 3)
+    return figure
+
+
+def pass_picture(one: Pass) -> Figure:
+    """Draw what was read of a pass, what was cut or taken off, and what is kept."""
+    figure, axes = stacked(one.readings)
+    foot_x = foot(one.readings)
+    cut = ~one.readings.trusted
+    for i, (name, ax) in enumerate(axes.items()):
+        size = unit(one.readings, name)
+        small = {"linestyle": "", "marker": ".", "markersize": 3}
+        draw(ax, foot_x, one.raw[i] / size, **small, color=style.GREY, label="read")
+        draw(ax, foot_x, one.taken[i] / size, color=style.CANDIDATE, label="zero, taken off")
+        kept = one.readings.values(name) / size
+        draw(ax, foot_x, kept, **small, color=style.REFERENCE, label="kept")
+        for x in foot_x[cut]:
+            ax.axvline(x, color=style.CANDIDATE, linewidth=0.5, alpha=0.4)
+        everywhere = ax.get_xaxis_transform()
+        ax.fill_between(
+            foot_x, 0, 1, where=one.free, transform=everywhere, color=style.GREY, alpha=0.15
+        )
+        ax.set_ylabel(reading_label(one.readings, name), fontsize=style.SMALL)
+    cuts = Line2D([], [], color=style.CANDIDATE, linewidth=0.5, label=f"cut: {cut.sum()} rows")
+    free = Patch(color=style.GREY, alpha=0.15, label="called free")
+    handles = axes["force_x"].get_legend_handles_labels()[0]
+    key_below(figure, [*handles, cuts, free], 3)
+    axes["force_x"].set_title(style.label(f"{one.name}, to the {one.direction}"), loc="left")
     return figure

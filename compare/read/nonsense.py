@@ -1,0 +1,118 @@
+"""What a pass of a rig cannot be: a contact called free, a stuck channel, a clock that jumps."""
+
+import numpy as np
+
+from analytic import CLAMP_READINGS, InputError
+from analytic.from_clamp.noise import scatter
+from analytic.problem.arrays import Booleans, Floats
+
+_BLOCKS = 5  # of a free stretch, of which the first three have a straight line
+_BENT = 0.03  # of the largest reading: a last block farther off that line is in contact
+_SIGMAS = 6.0  # of the noise of a block's mean
+_DRIFT = 0.25  # of the largest reading; more is no drift of a zero
+_STILL = 10  # rows that are equal, at least, while ...
+_MOVING = 0.1  # ... another reading changes by this part of its largest one
+_BACK = 0.02  # of the travel, in one step back
+_BESIDE = 3  # rows on either side of it
+_AHEAD = 0.02  # of the travel, in one step ahead across which ...
+_NEAR = 10  # rows on either side
+_SMOOTH = 0.25  # ... readings change by less than this part of what their slopes say
+
+
+def check_free(
+    which: str, stretch: float, foot_x: Floats, values: Floats, here: Booleans, name: str
+) -> None:
+    """Refuse a stretch that leads into the contact; it begins at the end of the pass."""
+    travel = float(np.ptp(foot_x))
+    if stretch >= travel:
+        what = f"{stretch:g}, of a pass ({name}) of {travel:.4g}"
+        remedy = "the contact would count as zero: state a shorter stretch"
+        raise InputError(f"passes.{which}", what, "shorter than the pass", remedy)
+    if which == "free_after":
+        values, here = values[:, ::-1], here[::-1]
+    rows = np.flatnonzero(here & np.isfinite(values).all(axis=0))
+    if len(rows) < 2 * _BLOCKS:
+        return
+    for reading, row in zip(CLAMP_READINGS, values, strict=True):
+        blocks = np.array_split(row[rows], _BLOCKS)
+        means = np.array([block.mean() for block in blocks])
+        beyond = means[-1] - np.polyval(np.polyfit(np.arange(3), means[:3], 1), _BLOCKS - 1)
+        size = float(np.nanmax(np.abs(row - np.median(row[rows]))))
+        noise = scatter(row[rows]) / np.sqrt(len(blocks[-1]))
+        limit = max(_BENT * size, _SIGMAS * noise * 2.5)  # the line's end has 2.4 times as much
+        if abs(beyond) > limit:
+            what = f"{stretch:g}, in which {reading} of {name} bends off by {beyond / size:+.0%}"
+            remedy = "the vibrissa touches something there: state a shorter stretch"
+            raise InputError(f"passes.{which}", what, "flat but for drift and noise", remedy)
+
+
+def check_drift(drift: Floats, values: Floats, name: str) -> None:
+    """Refuse two free stretches of which one is not free."""
+    for reading, change, row in zip(CLAMP_READINGS, drift, values, strict=True):
+        size = float(np.nanmax(np.abs(row), initial=0.0))
+        if abs(change) > _DRIFT * size:
+            what = f"a drift of {reading} of {name} by {change / size:+.0%} of its largest value"
+            allowed = f"at most {_DRIFT:.0%}"
+            remedy = (
+                "one of them is in contact, or the sensor was reset: look at the pass's picture"
+            )
+            raise InputError("passes.free_before and free_after", what, allowed, remedy)
+
+
+def check_channels(values: Floats, name: str) -> None:
+    """Refuse a channel that stands still while another one moves: it is stuck, or saturates."""
+    largest = np.nanmax(np.abs(values - np.nanmedian(values, axis=1, keepdims=True)), axis=1)
+    for i, reading in enumerate(CLAMP_READINGS):
+        row = values[i]
+        ends = np.flatnonzero(np.append(np.diff(row) != 0, True))
+        begins = np.append(0, ends[:-1] + 1)
+        for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+            if end - begin + 1 < _STILL:
+                continue
+            others = np.delete(values[:, begin : end + 1], i, axis=0)
+            moved = np.nanmax(others, axis=1) - np.nanmin(others, axis=1)
+            if np.any(moved > _MOVING * np.delete(largest, i)):
+                extreme = row[begin] in (np.nanmax(row), np.nanmin(row))
+                doing = "saturates" if extreme and np.ptp(row[np.isfinite(row)]) else "is stuck"
+                what = f"{row[begin]:g} over {end - begin + 1} rows of {name}: it {doing}"
+                allowed = "changing where the other readings do"
+                remedy = "leave the pass out, or repeat it within the sensor's range"
+                raise InputError(reading, what, allowed, remedy)
+
+
+def check_back(foot_x: Floats, name: str) -> None:
+    """Refuse rows whose foot position, or the time that it is from, jumps back and goes on."""
+    foot_x = foot_x[np.isfinite(foot_x)]
+    steps = np.diff(foot_x)
+    way = np.sign(np.median(steps)) if len(steps) else 0.0
+    for at in np.flatnonzero(way * steps < -_BACK * np.ptp(foot_x)).tolist():
+        before, after = foot_x[max(0, at - _BESIDE) : at + 1], foot_x[at + 1 : at + 2 + _BESIDE]
+        # Two rows that are swapped are soon behind; a stage that turns goes on to the other side.
+        still = len(before) + len(after) == 2 * _BESIDE + 2 and way * after[-1] < way * before[0]
+        if still and np.all(way * np.diff(before) > 0) and np.all(way * np.diff(after) > 0):
+            raise _jump(name, at, steps[at], "back")
+
+
+def check_ahead(foot_x: Floats, values: Floats, name: str) -> None:
+    """Refuse a pass in which the foot jumps ahead while the readings go on as if it did not."""
+    known = np.isfinite(values).all(axis=0)
+    foot_x, values = foot_x[known], values[:, known]
+    steps, travel = np.diff(foot_x), float(np.ptp(foot_x))
+    size, noise = np.abs(values).max(axis=1), np.array([scatter(row) for row in values])
+    for at in np.flatnonzero(np.abs(steps) > _AHEAD * travel).tolist():
+        sides = [slice(max(0, at - _NEAR + 1), at + 1), slice(at + 1, at + 1 + _NEAR)]
+        if any(len(foot_x[side]) < _NEAR or np.ptp(foot_x[side]) == 0 for side in sides):
+            continue
+        lines: Floats = np.array([np.polyfit(foot_x[x], values[:, x].T, 1) for x in sides])
+        slopes, heights = lines[:, 0], lines[:, 1]
+        expected = np.abs(slopes.mean(axis=0) * steps[at])
+        ends = slopes * foot_x[[at, at + 1], None] + heights
+        clear = expected > np.maximum(_SIGMAS * noise, _MOVING * size)
+        if clear.any() and np.all(np.abs(ends[1] - ends[0])[clear] < _SMOOTH * expected[clear]):
+            raise _jump(name, at, steps[at], "ahead, while the readings do not")
+
+
+def _jump(name: str, row: int, step: float, how: str) -> InputError:
+    what = f"a jump by {step:+.4g} after row {row + 1} of {name}, {how}"
+    remedy = "the clock or the stage's counter was reset: split the file there, or repeat the pass"
+    return InputError("foot_x", what, "going on in one direction", remedy)

@@ -1,0 +1,112 @@
+"""A rig's pass that cannot be: planted nonsense is refused, noise and drift are not."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
+from compare.read.passes import look_at_passes, read_passes
+from compare.read.rig_file import read_rig
+from tests.compare.command import vibrissa
+
+RIG = """
+[beam]
+length = 1.0
+[columns]
+foot_x = { column = "x" }
+force_x = { column = "fx" }
+force_y = { column = "fy" }
+moment_z = { column = "mz" }
+[passes]
+free_before = BEFORE
+free_after = AFTER
+"""
+
+
+@cache
+def exact():
+    case = Case(Beam(), circle(1.0, lowest=(0.0, 0.4)))
+    start, stop = case.foot_x[[0, -1]]
+    swept = solve_sweep(Case(Beam(), case.profile, Sweep(700, start + 0.3, stop - 0.3)))
+    return np.stack([swept.values(name) for name in ("foot_x", *CLAMP_READINGS)])
+
+
+def rig(folder, change=lambda x: x, before=0.2, after=0.2, kind="white", seed=0):
+    """A pass with 1 % of noise, 3 % of drift and a zero, with something planted."""
+    values, rng = exact().copy(), np.random.default_rng(seed)
+    size = np.abs(values[1:]).max(axis=1, keepdims=True)
+    noise = rng.standard_normal((3, values.shape[1]))
+    if kind == "walk":
+        noise = np.cumsum(noise, axis=1) / np.sqrt(values.shape[1])
+    values[1:] += size * (0.01 * noise + 0.05 + 0.03 * np.linspace(0, 1, values.shape[1]))
+    table = change(values).T
+    lines = ["x,fx,fy,mz", *(",".join(f"{x:.6f}" for x in row) for row in table)]
+    (folder / "pass.csv").write_text("\n".join(lines))
+    text = RIG.replace("BEFORE", str(before)).replace("AFTER", str(after))
+    (folder / "rig.toml").write_text(text)
+    return [folder / "pass.csv"], read_rig(folder / "rig.toml")
+
+
+@pytest.mark.parametrize("kind", ["white", "walk"])
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_and_drift_are_no_nonsense(tmp_path, kind, seed):
+    (one,) = read_passes(*rig(tmp_path, kind=kind, seed=seed))
+    assert one.fault is None
+
+
+def saturated(values):
+    return np.vstack([values[:2], np.minimum(values[2:3], 0.8 * values[2].max()), values[3:]])
+
+
+def stuck(values):
+    values[3, 250:330] = values[3, 250]
+    return values
+
+
+def clock_ahead(values):
+    values[0, 250:] -= 0.2
+    return values
+
+
+def clock_back(values):
+    values[0, 350:] += 0.15
+    return values
+
+
+@pytest.mark.parametrize(
+    ("change", "stretches", "why"),
+    [
+        (np.asarray, (9.0, 0.2), r"passes.free_before = 9, of a pass .*shorter than the pass"),
+        (np.asarray, (0.7, 0.2), r"passes.free_before = 0.7, in which .* bends off"),
+        (np.asarray, (0.2, 1.0), r"passes.free_after = 1, in which .* bends off"),
+        (lambda x: x[:, :500], (0.2, 0.05), "passes.free_"),
+        (saturated, (0.2, 0.2), r"force_y = .* rows of pass: it saturates"),
+        (stuck, (0.2, 0.2), r"moment_z = .* over 80 rows of pass: it is stuck"),
+        (clock_ahead, (0.2, 0.2), r"foot_x = a jump by -0\.2.* ahead, while the readings do not"),
+        (clock_back, (0.2, 0.2), r"foot_x = a jump by \+0\.14.* back"),
+        (lambda x: x[:, :1], (0.2, 0.2), r"5 or more"),
+    ],
+)  # fmt: skip
+def test_nonsense_is_refused(tmp_path, change, stretches, why):
+    with pytest.raises(InputError, match=why) as found:
+        read_passes(*rig(tmp_path, change, *stretches))
+    assert "\n" not in str(found.value)
+
+
+def test_the_picture_of_a_refused_pass_is_written(tmp_path):
+    files, _ = rig(tmp_path, before=0.7)
+    done = vibrissa("rig", *files, "--rig", "rig.toml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "bends off" in done.stderr
+    assert (tmp_path / "out" / "pass.png").stat().st_size > 10_000
+    assert not (tmp_path / "out" / "pass.parquet").exists()
+
+
+def test_faults_of_one_pass_leave_the_others_as_they_are(tmp_path):
+    files, described = rig(tmp_path)
+    (tmp_path / "bad.csv").write_text(files[0].read_text())
+    rig(tmp_path, stuck)
+    faults = {one.name: one.fault for one in look_at_passes([tmp_path], described)}
+    assert faults["bad"] is None
+    assert "is stuck" in str(faults["pass"])
