@@ -88,10 +88,10 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/python -m docs.figures.quasi_static results/quasi-static.csv
 	$(BIN)/python -m docs.figures.quasi_static_picture results/quasi-static.csv results/quasi-static.png
 	$(BIN)/python -m docs.figures.paper catenary results/pictures
-	$(BIN)/vibrissa reconstruct catenary --out results/pictures
+	$(BIN)/python -m docs.figures.methods catenary results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
 	for case in catenary parabola tip-only; do \
-	  $(BIN)/vibrissa reconstruct $$case --on all --out results/runs/methods-$$case; done
+	  $(BIN)/python -m docs.figures.methods $$case results/runs/methods-$$case --on all; done
 	$(BIN)/vibrissa study resolution --out results/resolution
 	$(BIN)/vibrissa report results/resolution
 	cp results/resolution/report/disagreement-mujoco.segments.png results/study-resolution.png

@@ -63,7 +63,6 @@ COMMANDS = (
     (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
     (1, "compare a/analytic.parquet exact/analytic.parquet a/mujoco-chain.parquet --out side"),
     (0, "reconstruct a/analytic.parquet space/analytic.parquet --out found"),
-    (0, "reconstruct mine.toml --out methods"),
     (0, "calibrate a/analytic.parquet mine.toml --fit flexural_rigidity --out a"),
     (0, "rig rig.csv --rig rig.toml --out passes"),
     (1, "report a"),

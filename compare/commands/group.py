@@ -13,7 +13,7 @@ _GONE = {
     "animate": "vibrissa run CASE --film",
     "budget": "vibrissa run CASE --budget",
     "side-by-side": "vibrissa compare REFERENCE CANDIDATE...",
-    "methods": "vibrissa reconstruct CASE, for a file with --errors",
+    "methods": "vibrissa study methods-noise, or python -m docs.figures.methods CASE DIR",
     "float32": "vibrissa inspect CASE --float32",
     "study-report": "vibrissa report DIR",
     "findings": "vibrissa report DIR",

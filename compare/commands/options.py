@@ -181,15 +181,3 @@ def require_fraction(option: str, value: float, usual: str) -> None:
 def words(text: str) -> list[str]:
     """The words between the commas of an option."""
     return [word.strip() for word in text.split(",")]
-
-
-def shares(option: str, text: str, most: int) -> list[float]:
-    """The numbers between the commas of an option, each at least 0 and below 1."""
-    try:
-        found = [float(word) for word in words(text)]
-    except ValueError:
-        found = []
-    if not 0 < len(found) <= most or not all(0 <= share < 1 for share in found):
-        allowed = "a number" if most == 1 else f"one to {most} numbers"
-        raise InputError(option, repr(text), f"{allowed} from 0 up to 1", "as 0.01")
-    return found

@@ -23,7 +23,6 @@ from analytic.problem.support import check_support
 from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
 from compare.commands.comparing import RigFiles as RigFiles
-from compare.commands.methods import compare_methods as compare_methods
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
 from compare.commands.sweep_lines import note_rows, print_reconstruction

@@ -20,7 +20,7 @@ _MOST = 0.9  # share of the contacts that must have an answer
 
 @dataclass(frozen=True)
 class MethodsRecord:
-    """A table of `vibrissa reconstruct CASE`, and its picture."""
+    """A table of `docs.figures.methods`, and its picture."""
 
     folder: Path  # where they are
     case: str  # whose readings the methods were given
@@ -58,7 +58,7 @@ class MethodsRecord:
 
 
 def read_methods(folder: Path) -> list[MethodsRecord]:
-    """All tables of `vibrissa reconstruct CASE` in the folders of `folder`."""
+    """All tables of `docs.figures.methods` in the folders of `folder`."""
     return sorted((_read(file) for file in folder.glob("*/methods.csv")), key=lambda one: one.case)
 
 
@@ -117,6 +117,6 @@ def _read(file: Path) -> MethodsRecord:
     raise InputError(
         f"file {file}",
         fault,
-        "a table of `vibrissa reconstruct CASE`",
+        "a table of `docs.figures.methods`",
         "make it again, or remove its folder",
     )

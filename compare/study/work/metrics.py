@@ -8,7 +8,7 @@ from analytic import CLAMP_READINGS, Direction, Events, Readings, find_events
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT
 from compare.align.frames import COMPONENTS
-from compare.measure.methods import contacts_by
+from compare.measure.contacts import contacts_by
 from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.study import Record

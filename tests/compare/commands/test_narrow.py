@@ -6,12 +6,11 @@ import pytest
 
 from analytic import named_case, solve_sweep
 from compare.commands import terminal
-from compare.commands.methods import print_methods
-from compare.commands.sweep_lines import print_passes
-from compare.measure.methods import method_errors
 from compare.read.passes import read_passes
 from compare.read.rig_file import read_rig
 from compare.show.budgets import budget_summary
+from compare.show.passes import passes_summary
+from docs.figures.methods import method_errors, print_methods
 from tests.compare.planted import planted
 
 RIG = Path(__file__).parents[3] / "docs" / "examples" / "rig"
@@ -24,7 +23,7 @@ def methods():
 
 
 def passes():
-    print_passes(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), {})
+    terminal.show(*passes_summary(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), []))
 
 
 def budget():

@@ -20,7 +20,7 @@ from compare.commands.compare import ONE, SEVERAL
 from compare.commands.inspect import FILE, SINGLE
 from compare.commands.kinds import ANY_CASE, For
 from compare.commands.main import app
-from compare.commands.reconstruct import ERRORS, SWEEP
+from compare.commands.reconstruct import SWEEP
 from compare.commands.study import COUNTED, HERE, ON_A_CLUSTER
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from tests.compare.command import vibrissa
@@ -78,8 +78,7 @@ TAKES: dict[str, dict[str, tuple[str, ...]]] = {
              SPACE: ("space.toml",)},
     "compare": {ONE: ("rig.csv", "near.csv"), SEVERAL: ("rig.csv", "near.csv", "ours.parquet"),
                 SPACE: ("space.toml", "space.csv")},
-    "reconstruct": {SWEEP: ("rig.csv",), SPACE: ("space.csv", "--beam", "space.toml"),
-                    ERRORS: ("plane.toml", "--method", "elastica", "--noise", "0")},
+    "reconstruct": {SWEEP: ("rig.csv",), SPACE: ("space.csv", "--beam", "space.toml")},
     "calibrate": {KNOWN: ("rig.csv", "plane.toml")},
     "inspect": {FILE: ("sound-chain",), MODEL: ("model.toml",),
                 SINGLE: ("plane.toml", "--float32")},
@@ -93,7 +92,7 @@ VALUES = {
     "--column": "force_x=other", "--reference-column": "force_x=other",
     "--reference-beam": "other.toml", "--tolerances": "limits.toml", "--friction": "0.1",
     "--uncertainty": "uncertain.toml", "--budget": "budget.json", "--method": "kaneko",
-    "--on": "friction", "--fit": "offset", "--foot": "nobody", "--force": "nothing",
+    "--fit": "offset", "--foot": "nobody", "--force": "nothing",
     "--torque": "nothing", "--geoms": "nothing", "--site": "nothing", "--workers": "2",
     "--contact-stiffness": "1e5", "--write": "fixed.xml", "--out": "out", "--scheduler": "tcp://nowhere.invalid:1",
 }  # fmt: skip
@@ -105,15 +104,11 @@ INSTEAD = {
     ("calibrate", KNOWN, "--direction"): ("both.csv", "plane.toml"),
     ("compare", ONE, "--budget"): ("rig.csv", "near.csv", "--uncertainty", "uncertain.toml"),
     ("run", MOTION, "--motion"): ("plane.toml",),
-    ("reconstruct", ERRORS, "--errors"): ("ours.parquet",),
-    ("reconstruct", ERRORS, "--noise"): ("plane.toml", "--method", "elastica"),
-    ("reconstruct", ERRORS, "--method"): ("plane.toml", "--noise", "0"),
 }
 BESIDE = {"--budget": ("--budget",), "--film": ("--film",)}
 # What makes another kind of it.
 OTHERWISE = {
     PLANE: ("--motion", "--speed", "--timestep"),
-    **dict.fromkeys((SWEEP, SPACE), ("--errors",)),
     HERE: ("--scheduler",),
 }
 # Beside MuJoCo's window, MuJoCo Warp and a cluster, which are not here; and where results are as

@@ -11,10 +11,10 @@ from analytic import CLAMP_READINGS, Case, Readings, Sweep, circle, named_case, 
 from analytic.problem.support import Support
 from compare.align.offset import without_offset
 from compare.measure.cantilever import tip_of
-from compare.measure.conditions import as_believed
 from compare.measure.measurement import measure
 from compare.measure.repeats import repeats
 from compare.sense.noise import with_noise
+from docs.figures.methods import as_believed
 from tests.compare.synthetic import BEAM, changed, scaled, solved
 
 WINDOW = 0.02

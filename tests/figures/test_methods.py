@@ -3,12 +3,19 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analytic import Beam, Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
 from analytic.from_clamp.earlier.methods import NAMES, OWN
-from compare.measure.conditions import CONDITIONS, as_believed, chosen_conditions
-from compare.measure.methods import method_errors
+from compare.read.case import load_job
+from docs.figures.methods import (
+    CONDITIONS,
+    as_believed,
+    chosen_conditions,
+    compare_methods,
+    method_errors,
+)
 
 EXACT = ("elastica", "decision", "scholz-rahn", "clements-rahn")
 CIRCLE = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(60))
@@ -126,3 +133,26 @@ def test_each_is_as_large_as_it_says_in_any_units(name, changed):
     again = CONDITIONS[name].true(true)
     assert again.beam.natural_curvature == pytest.approx(true.beam.natural_curvature, rel=1e-12)
     assert again.friction == true.friction
+
+
+def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
+    case = load_job("parabola")
+    solve_sweep(case.case).write(tmp_path / "parabola.parquet")
+    tables = []
+    for given in (case, tmp_path / "parabola.parquet"):
+        compare_methods(given, tmp_path, ["kaneko", "elastica"], [0.0, 0.01], ["exact"])
+        tables.append(pd.read_csv(tmp_path / "methods.csv").drop(columns="seconds"))
+    pd.testing.assert_frame_equal(*tables)
+    assert (tmp_path / "methods.png").exists()
+
+
+def test_readings_of_other_vibrissae(tmp_path, capsys):
+    compare_methods(
+        load_job("parabola"), tmp_path, ["binary", "elastica"], [0.0], ["exact", "friction"]
+    )
+    assert "contacts" in capsys.readouterr().out
+    table = pd.read_csv(tmp_path / "methods.csv")
+    assert set(table["readings"]) == {"exact", "friction"}
+    informed = table[table["method"] == "elastica-informed"]
+    assert set(informed["readings"]) == {"friction"}
+    assert informed["worst"].max() < 1e-10
