@@ -19,7 +19,7 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz sweeps bench results again studies \
+.PHONY: help install develop run test test-slow test-all trials coverage lint docs gallery wheel fuzz sweeps bench results again studies \
   net size reference install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
@@ -59,8 +59,11 @@ reference: install ## docs/examples/reference/tables: contact states for tests o
 size: develop    ## lines of code and docstring, room by room
 	$(BIN)/python -m tests.size
 
-docs: develop    ## the pages and an API reference -> site/index.html
-	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+docs: develop    ## the pages and an API reference, offline -> site/index.html
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q -c docs . site
+
+gallery: develop ## docs/gallery/*.png, by the lines on its page
+	$(BIN)/python -m docs.gallery.make
 
 wheel: develop   ## dist/*.whl
 	$(BIN)/python -m build --wheel --no-isolation
