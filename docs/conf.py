@@ -13,7 +13,9 @@ NAV = {
         "analytic/real-vibrissa analytic/there-and-back analytic/who-does-not-know "
         "analytic/calibrate analytic/out-of-plane"
     ),
-    "In space": "analytic/space analytic/space-mujoco analytic/space-compare",
+    "In space": (
+        "analytic/space analytic/space-mujoco analytic/space-friction analytic/space-compare"
+    ),
     "MuJoCo": (
         "mujoco_models/README mujoco_models/at-rest mujoco_models/motion mujoco_models/quasi-static"
     ),

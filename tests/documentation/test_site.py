@@ -1,15 +1,24 @@
 """The pages as a site: `make docs`."""
 
 import re
+import runpy
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
-from tests.documentation.blocks import ROOT
+from tests.documentation.blocks import PAGES, ROOT
 
 ASSET = re.compile(r"<(?:script|img|link|iframe)\b[^>]*?(?:src|href)=\"?(https?:[^\"\s>]+)")
+
+
+def test_every_page_is_in_the_table_of_contents():
+    pytest.importorskip("sphinx")
+    nav = runpy.run_path(str(ROOT / "docs" / "conf.py"))["NAV"]
+    listed = {Path(f"{page}.md") for pages in nav.values() for page in pages.split()}
+    assert {*PAGES} <= {Path("README.md"), *listed}
 
 
 @pytest.mark.slow
