@@ -7,6 +7,8 @@ import numpy as np
 import pandas as pd
 
 from analytic.checks.integration import integrate_span
+from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
+from analytic.problem.arrays import Floats
 from analytic.problem.readings import Readings
 from analytic.problem.support import is_plain, support_of
 
@@ -117,4 +119,28 @@ def certify(readings: Readings) -> pd.DataFrame:
             misses += [beyond.phi - tip_angle[touching], np.where(free, pushed, 0.0)[touching]]
         boundary[touching] = np.abs(misses).max(axis=0)
         balance[touching] = np.abs(left)
+    if (two := touches_twice(readings.table)).any():
+        natural = length * float(beam.curvature_at(0.0))
+
+        def span(
+            force_x: Floats, force_y: Floats, moment: Floats, slope: Floats, along: Floats
+        ) -> Reached:
+            end = integrate_span(
+                force_x,
+                force_y,
+                moment,
+                along,
+                compliance=0.0,
+                clamp_angle=slope - np.pi / 2,
+                natural=lambda s: np.full_like(s, natural),
+                breaks=(),
+                flexibility=np.ones_like,
+            )
+            return Reached(end.x, end.y, end.phi, end.moment)
+
+        read = dimensionless(readings.table, two, length, beam.force_unit, beam.moment_unit)
+        tip_radius = beam.unloaded.tip_radius
+        boundary[two], balance[two] = misses_of_two(
+            read, friction, tip_radius, natural, compliance, span
+        )
     return pd.DataFrame({"residual_boundary": boundary, "residual_moment": balance})

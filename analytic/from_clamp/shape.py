@@ -3,6 +3,7 @@
 import numpy as np
 
 from analytic.checks.integration import march
+from analytic.checks.of_two import touches_twice
 from analytic.from_clamp.contact import SweptVibrissa, located
 from analytic.from_clamp.turning import shapes_turning
 from analytic.problem.along import Along
@@ -25,13 +26,13 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     Parameters
     ----------
     readings : Readings
-        Only the four sensed columns are used.
+        Only the four sensed columns are used, and a second contact where one is stated.
 
     Returns
     -------
     x, y : array, shape (stations, 66)
-        Coordinates [length]; shape (stations, 81) if the vibrissa is curved at rest.
-
+        Coordinates [length]; shape (stations, 81) if the vibrissa is curved at rest, and 64 points
+        more if readings state a second contact.
     """
     if readings.running != "foot_x":
         return shapes_turning(readings, deflected_shapes)
@@ -45,6 +46,8 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     moment = readings.values("moment_z") / beam.moment_unit
     loaded = located(readings).arc_length
     loaded = np.minimum(np.nan_to_num(loaded, nan=1.0), 1.0)
+    if (two := touches_twice(readings.table)).any():
+        loaded = np.where(two, readings.values("contact_arc_length") / long, loaded)
 
     def rate(state: Floats) -> Floats:
         x, y, phi, s = state
@@ -69,6 +72,14 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         ]
     )
     states = march(rate, clamp, loaded, _STEPS)
+    if two.any():
+        x, y = states[-1][:2]
+        outer_x, outer_y = _outer_share(readings) / beam.force_unit
+        moment = moment - ((force_y - outer_y) * x - (force_x - outer_x) * y)
+        force_x, force_y = outer_x, outer_y
+        outer = np.where(two, readings.values("second_contact_arc_length") / long, loaded)
+        states = np.concatenate([states, march(rate, states[-1], outer - loaded, _STEPS)[1:]])
+        loaded = outer
     if isinstance(beam.natural_curvature, Along):
         rest_of_it = march(rate_at_rest, states[-1], 1 - loaded, _FREE)[1:]
         return _drawn(np.concatenate([states, rest_of_it]), foot_x, long)
@@ -86,6 +97,14 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         axis=1,
     )
     return _drawn(np.concatenate([states, free]), foot_x, long)
+
+
+def _outer_share(readings: Readings) -> Floats:
+    """What of the clamp's force holds against the outer one of two contacts, (2, stations)."""
+    alpha, force = (readings.values(f"second_contact_{name}") for name in ("angle", "force"))
+    mu = SweptVibrissa.of(readings).way * readings.support.friction
+    sin, cos = np.sin(alpha), np.cos(alpha)
+    return np.asarray(np.nan_to_num(force * np.array([-sin - mu * cos, cos - mu * sin])))
 
 
 def _drawn(states: Floats, foot_x: Floats, long: float) -> tuple[Floats, Floats]:
@@ -116,4 +135,9 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     y = y - readings.foot_y[:, None]
     kappa = (force_y * (x - foot_x) - force_x * y - moment) / beam.rigidity_at(s)
     kappa[:, _STEPS + 1 :] = 0.0
+    if touches_twice(readings.table).any():
+        along = slice(_STEPS + 1, 2 * _STEPS + 1)
+        outer_x, outer_y = _outer_share(readings)[..., None]
+        way_x, way_y = (v[:, along] - v[:, 2 * _STEPS, None] for v in (x, y))
+        kappa[:, along] = (outer_y * way_x - outer_x * way_y) / beam.rigidity_at(s[:, along])
     return np.asarray(kappa + beam.curvature_at(s))

@@ -53,6 +53,8 @@ def as_upright(readings: Readings) -> Readings:
     x, y = force.seen(readings.values("force_x"), readings.values("force_y"))
     ways = ["clamp_angle", "foot_y", "travel"]
     table = readings.table.drop(columns=[name for name in ways if name in readings.table])
+    if "second_contact_angle" in table:
+        table = table.assign(second_contact_angle=table["second_contact_angle"] - pose.angle)
     return replace(readings, table=table.assign(foot_x=0.0, force_x=x, force_y=y))
 
 

@@ -24,6 +24,14 @@ STATUSES = (
     "touches again",
     "sticks",
 )
+SECOND_CONTACT = (
+    "second_contact_force",
+    "second_contact_angle",
+    "second_contact_arc_length",
+    "second_contact_x",
+    "second_contact_y",
+)
+"""What readings have besides where a vibrissa touches in two places, of the one nearer its tip."""
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")
 WORDS = {"phase": PHASES, "status": STATUSES}
 """The columns of words, with what may stand in them."""
@@ -39,13 +47,17 @@ class Column(NamedTuple):
 
 
 SCHEMA = {
-    **dict.fromkeys(("foot_x", "contact_x"), Column("length", odd=True)),
+    **dict.fromkeys(("foot_x", "contact_x", "second_contact_x"), Column("length", odd=True)),
     **dict.fromkeys(("force_x", "force_x_raw"), Column("force", odd=True)),
     **dict.fromkeys(("force_y", "force_y_raw"), Column("force")),
     **dict.fromkeys(("moment_z", "moment_z_raw"), Column("moment", odd=True)),
-    **dict.fromkeys(("contact_angle", "clamp_angle"), Column("angle", odd=True)),
+    **dict.fromkeys(
+        ("contact_angle", "second_contact_angle", "clamp_angle"), Column("angle", odd=True)
+    ),
     **dict.fromkeys(("contact_arc_length", "contact_y"), Column("length")),
     **dict.fromkeys(("penetration", "out_of_plane"), Column("length")),
+    **dict.fromkeys(("second_contact_arc_length", "second_contact_y"), Column("length")),
+    "second_contact_force": Column("force"),
     "residual": Column("moment"),
     "sideways_stiffness": Column("force/length"),
     # In space only, where there is no such mirror.

@@ -76,7 +76,8 @@ class AnyRecorder(ABC, Generic[Kept]):
 
     def _columns(self, first: tuple[str, ...]) -> dict[str, Any]:
         """By name, in the units of the beam; a station without numbers has NaN."""
-        names = [n for n in dict.fromkeys([*first, *self.rows[0]]) if n not in self.places]
+        given = dict.fromkeys([*first, *(name for row in self.rows for name in row)])
+        names = [name for name in given if name not in self.places]
         columns: dict[str, Any] = {n: x[: len(self.rows)] for n, x in self.places.items()}
         for name, unit in zip(names, units(self.case.beam, names), strict=True):
             if name in WORDS:

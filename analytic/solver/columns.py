@@ -7,7 +7,14 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
-from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASE_NUMBER, STATUS_NUMBER
+from analytic.problem.columns import (
+    CLAMP_READINGS,
+    COLUMNS,
+    CONTACT,
+    PHASE_NUMBER,
+    SECOND_CONTACT,
+    STATUS_NUMBER,
+)
 from analytic.solver.general.states import States, Vibrissa
 
 Numbers: TypeAlias = Floats | Integers
@@ -75,7 +82,7 @@ def to_columns(found: States, units: Units) -> ReadingColumns:
     w_x, w_y = vibrissa.weight
     if w_x or w_y:
         force_x, force_y = force_x - w_x * units.force, force_y - w_y * units.force
-    return {
+    columns: ReadingColumns = {
         "foot_x": found.foot_x * units.length,
         "force_x": force_x,
         "force_y": force_y,
@@ -90,6 +97,27 @@ def to_columns(found: States, units: Units) -> ReadingColumns:
             np.isnan(found.excess), STATUS_NUMBER["unreachable"], STATUS_NUMBER["ok"]
         ),
     }
+    return columns if found.inner is None else columns | _with_inner(columns, found, units)
+
+
+def _with_inner(columns: ReadingColumns, found: States, units: Units) -> ReadingColumns:
+    """The contact nearer to the clamp as the first one, and both forces."""
+    inner, vibrissa = found.inner, found.vibrissa
+    assert inner is not None
+    alpha, xi, eta = inner.point[:3]
+    sine, cosine = np.sin(alpha), np.cos(alpha)
+    mu, force = vibrissa.friction, inner.force * units.force
+    second = {f"second_{name}": columns[name] for name in CONTACT[:-1]}
+    return second | {
+        "second_contact_force": found.force * units.force,
+        "force_x": columns["force_x"] - force * (sine + mu * cosine),
+        "force_y": columns["force_y"] + force * (cosine - mu * sine),
+        "phase": np.full(len(force), PHASE_NUMBER["tangent"]),
+        "contact_angle": alpha,
+        "contact_arc_length": (found.arc_length - inner.apart) * units.length,
+        "contact_x": (xi - vibrissa.radius * sine) * units.length,
+        "contact_y": (eta + vibrissa.radius * cosine) * units.length,
+    }
 
 
 def without(columns: ReadingColumns, which: Booleans, status: str) -> ReadingColumns:
@@ -97,4 +125,5 @@ def without(columns: ReadingColumns, which: Booleans, status: str) -> ReadingCol
     if not which.any():
         return columns
     found = {**columns, "status": np.where(which, STATUS_NUMBER[status], columns["status"])}
-    return found | {name: np.where(which, np.nan, columns[name]) for name in READINGS}
+    nowhere = (*READINGS, *(name for name in SECOND_CONTACT if name in columns))
+    return found | {name: np.where(which, np.nan, columns[name]) for name in nowhere}

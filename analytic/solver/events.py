@@ -27,9 +27,14 @@ from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria_at, tangent_contact
-from analytic.solver.general.clearance import is_clear
+from analytic.solver.general.chain import (
+    clear_state,
+    joined,
+    second_contacts,
+    with_second_contacts,
+)
 from analytic.solver.general.path import follow
-from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
 
@@ -64,11 +69,13 @@ class Events(Shown):
     eq. 21 even where it exceeds the vibrissa's length: then there is no Phase B, and only its
     angle, contact point and arc length have a meaning. With a natural curvature, friction or an
     elastic clamp there are no numbers then; and where such a vibrissa would touch the object in a
-    second place, the ``status`` is ``"touches again"`` and there are no readings: the event does
-    not happen as that of a vibrissa with one contact. ``out_of_plane`` is where a vibrissa that
+    place more than is solved, the ``status`` is ``"touches again"`` and there are no readings: the
+    event does not happen. ``out_of_plane`` is where a vibrissa that
     nothing guides leaves the plane of the sweep (`analytic.from_clamp.sideways`); what is after it
     happens to one that is guided. From ``back_start`` to ``back_end`` a vibrissa that is curved
-    towards the object lies on it with its other side: that is Phase B too.
+    towards the object lies on it with its other side: that is Phase B too. From
+    ``second_contact_start`` to ``second_contact_end`` it touches in two places, and the contact of
+    an event is the one nearer to the clamp: that is Phase B as well.
     """
 
     first_contact: Event
@@ -79,6 +86,8 @@ class Events(Shown):
     snap_off: Event
     back_start: Event | None = None
     back_end: Event | None = None
+    second_contact_start: Event | None = None
+    second_contact_end: Event | None = None
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Mark the events in the clamp readings over the foot position.
@@ -251,21 +260,26 @@ def _general_events(
     contour: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
 ) -> Events:
     touch = first_touch(contour, reach, vibrissa.at_rest.shape)
-    path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
+    poses = along_x(vibrissa.clamp_angle)
+    path = follow(contour, vibrissa, touch, reach, poses)
     if not path.complete:
         place = f"beyond foot_x = {path.p[-1] * beam.length:.6g}"
         raise ArithmeticError(f"the equilibria along {contour.label} are lost {place}")
-    places = {name: i for name, i in path.events().items() if i is not None}
-    at = np.array([*places.values()])
-    z, units = path.z[at], Units.of(beam)
-    states = states_at(contour, z, vibrissa)
-    columns = to_columns(states, units)
-    clear = is_clear(contour, states)
-    checked = without(without_inexact(columns, vibrissa, units), ~clear, "touches again")
-    checked["foot_x"] = np.where(clear, checked["foot_x"], path.p[at] * beam.length)
-    # First contact is of two rigid bodies: there is no force whose direction could be checked.
-    rows = zip(places, _rows(columns), _rows(checked), strict=True)
-    found = {name: row if places[name] > 0 else first for name, first, row in rows}
+    paths = with_second_contacts((contour,), path, poses)
+    path, units = joined(paths), Units.of(beam)
+    found = {}
+    for name, i in {**path.events(), **second_contacts(paths)}.items():
+        if i is None:
+            continue
+        state, clear = clear_state(paths, i, ())
+        columns = to_columns(state, units)
+        # First contact is of two rigid bodies: there is no force whose direction could be checked.
+        if i > 0:
+            foot_x = columns["foot_x"]
+            wrong = np.array([not clear])
+            columns = without(without_inexact(columns, vibrissa, units), wrong, "touches again")
+            columns["foot_x"] = foot_x
+        found[name] = _rows({column: columns[column] for column in COLUMNS})[0]
     return Events(
         found["first_contact"],
         found.get("phase_b_start"),
@@ -275,6 +289,8 @@ def _general_events(
         found["snap_off"],
         found.get("back_start"),
         found.get("back_end"),
+        found.get("second_contact_start"),
+        found.get("second_contact_end"),
     )
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
 from analytic.solver.columns import Numbers, ReadingColumns, Units, without
@@ -96,12 +97,39 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
     if hung is not None:
         unheld = np.abs(moment - vibrissa.at_rest.moment) <= _ROUNDING * np.hypot(w_x, w_y)
         free = np.isnan(length) & unheld
-    return {
+    checked = {
         "residual_boundary": np.where(free, 0.0, np.abs(missed).max(axis=0) / extent),
         "residual_moment": np.where(
             free, 0.0, np.abs(unbalanced) / np.maximum(extent, np.abs(moment))
         ),
     }
+    if (two := touches_twice(columns)).any():
+        found = _of_two(columns, two, vibrissa, units)
+        for values, missed_by in zip(checked.values(), found, strict=True):
+            values[two] = missed_by
+    return checked
+
+
+def _of_two(
+    columns: ReadingColumns, two: Booleans, vibrissa: Vibrissa, units: Units
+) -> tuple[Floats, Floats]:
+    """What the stations with two contacts miss."""
+    natural = vibrissa.natural_curvature
+
+    def span(
+        force_x: Floats, force_y: Floats, moment: Floats, slope: Floats, length: Floats
+    ) -> Reached:
+        direction = np.arctan2(-force_x, force_y)
+        force = np.hypot(force_x, force_y)
+        end = back_to_clamp(slope - direction, moment - natural, force, length)
+        sin, cos = np.sin(direction), np.cos(direction)
+        phi = direction + np.pi / 2 - 2 * np.arctan2(end.p, end.g)
+        x, y = end.along * cos - end.across * sin, end.along * sin + end.across * cos
+        return Reached(x, y, phi, -end.kappa - natural)
+
+    read = dimensionless(columns, two, *map(float, units))
+    mu, radius = float(vibrissa.friction), float(vibrissa.radius)
+    return misses_of_two(read, mu, radius, natural, vibrissa.compliance, span)
 
 
 class _Span(NamedTuple):

@@ -177,8 +177,9 @@ class MovingModel(SteppedModel):
 
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""
+        contacts = self.contacts()
         return {
-            **self.contacts().as_reading(self.data.contact.pos[:, :2]),
+            **contacts.as_reading(self.data.contact.pos[:, :2], contacts.loaded),
             "tip_angle": self.tip_angle,
             "status": "ok",
             "kinetic_share": self.kinetic_share(speed),

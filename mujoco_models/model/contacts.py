@@ -110,9 +110,8 @@ class Contacts(NamedTuple):
         """Which of them carry a load, shape (n,)."""
         return np.asarray(self.distance < 0)
 
-    def as_reading(self, place: Floats) -> dict[str, Any]:
-        """Phase and contact as a row of readings has them: the loaded contacts' mean, by force."""
-        loaded = self.loaded
+    def as_reading(self, place: Floats, loaded: Booleans) -> dict[str, Any]:
+        """Phase and contact as a row of readings has them: some contacts' mean, by force."""
         if not loaded.any():
             return {"phase": "free", **NOWHERE, "penetration": 0.0}
         depth, s = self.distance[loaded], self.arc_length[loaded]
@@ -128,12 +127,20 @@ class Contacts(NamedTuple):
             "penetration": float(-weight @ depth),
         }
 
-    def touch_twice(self, layout: Layout) -> bool:
-        """Whether a vibrissa that is curved at rest touches in two places."""
-        if layout.vibrissa.is_straight:
-            return False
-        apart = np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0)
-        return bool(apart > max(_APART, _LINKS * float(layout.lengths.max())))
+    def places(self, layout: Layout) -> list[Booleans]:
+        """Which of them are in one place of the vibrissa and which in another, from the clamp on.
+
+        There are two places where loaded contacts are farther apart than those of one place are,
+        and three or more where that is so again; a straight vibrissa touches in one.
+        """
+        loaded = self.loaded
+        if layout.vibrissa.is_straight or not loaded.any():
+            return [loaded]
+        most = max(_APART, _LINKS * float(layout.lengths.max()))
+        along = np.sort(self.arc_length[loaded])
+        after = along[1:][np.diff(along) > most]
+        number = np.searchsorted(after, self.arc_length, side="right")
+        return [loaded & (number == i) for i in range(len(after) + 1)]
 
     @property
     def slope(self) -> Floats:

@@ -66,7 +66,7 @@ def relax(
             slopes = contacts.slope[contacts.loaded]
             if not obstacle.faces(slopes):
                 break  # pushed out through the far side of the object: no state of the sweep
-            twice = contacts.touch_twice(model.layout)
+            twice = len(contacts.places(model.layout)) > 1
             if lookout.move_window(obstacle.place(slopes)):
                 continue
             if unwatched := lookout.unwatched():

@@ -314,16 +314,22 @@ class Walk(Generic[Model]):
         """The readings of the state that the beam is in."""
         model, state = self.model, self._shown
         clamp, contacts = model.clamp(), model.contacts()
+        first, *others = contacts.places(model.layout)
+        where = model.contact_places()
         row: dict[str, Any] = {
             **clamp._asdict(),
-            **contacts.as_reading(model.contact_places()),
+            **contacts.as_reading(where, first),
             "tip_angle": float(model.layout.tip_angle(state.angles) + model.pose.angle),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
-        if self.doubt is None and contacts.touch_twice(model.layout):
+        if self.doubt is None and len(others) == 1:
+            second = contacts.as_reading(where, others[0])
+            row |= {f"second_{name}": second[name] for name in NOWHERE}
+            row["second_contact_force"] = sum(state.forces[i] for i in contacts.touch[others[0]])
+        elif self.doubt is None and others:
             row.update(NOWHERE, status="touches again")
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:

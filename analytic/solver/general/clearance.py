@@ -6,6 +6,7 @@ vibrissa that is bent towards the object, as one of natural curvature may be bey
 before it, can fail that: it would touch a second time, and the state is none.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,26 +17,54 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Pose
 from analytic.solver.general.march import Trail, march
+from analytic.solver.general.pair import Pair, places
 from analytic.solver.general.states import States, Vibrissa
 
 _PLACES = np.linspace(0, 1, 17)[1:]  # parts of the loaded span, and of the free end
+_FINE = np.linspace(0, 1, 257)[1:]  # the same where two contacts may be close to each other
 _MARKS = np.linspace(0, 1, 33)  # of the places at which a vibrissa that varies is known
 _STRAIGHT = 1e-12  # 1/L; rounding of a natural curvature that vanishes
 _TANGENTS = 65
 _CHUNK = 500  # contacts at a time, so that their places and tangents find room
+_CHUNK_OF_TWO = 32
 _BESIDE = 0.13  # L; twice as far as places are apart, and the cubic errs by 1e-5 L
 _AT_ONCE = 2_000_000  # corners beside contacts, so that they find room
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
-def is_clear(contour: Contour, contact: States) -> Booleans:
-    """Whether states touch the object nowhere else."""
-    clear = _bends_one_way(contact)
-    left = np.flatnonzero(~clear & np.isfinite(contact.excess))
-    if left.size:
-        for some in np.array_split(left, 1 + left.size // _CHUNK):
-            clear[some] = _is_outside(contour, take(contact, some))
+def is_clear(contour: Contour | Pair, contact: States, others: Sequence[Contour] = ()) -> Booleans:
+    """Whether states touch the object, or two, and others too nowhere else."""
+    if not isinstance(contour, Contour):
+        if contour.inner is not contour.outer:
+            others = (*others, contour.inner)
+        contour = contour.outer
+    clear = _are_outside(contour, contact, ~bends_one_way(contact))
+    for other in others:
+        clear &= _are_outside(other, contact, clear)
     return clear & _starts_outside(contact) & _passes_corners(contour, contact)
+
+
+def _are_outside(contour: Contour, contact: States, doubtful: Booleans) -> Booleans:
+    """Whether states are outside an object, as those are that are not doubtful."""
+    outside = ~(doubtful | np.isnan(contact.excess))
+    left = np.flatnonzero(doubtful & np.isfinite(contact.excess))
+    chunk = _CHUNK if contact.inner is None else _CHUNK_OF_TWO
+    if left.size:
+        for some in np.array_split(left, 1 + left.size // chunk):
+            outside[some] = _is_outside(contour, take(contact, some))
+    return outside
+
+
+def deepest(objects: Sequence[Contour], contact: States) -> tuple[int, float, float]:
+    """Which object a state is deepest in, at which arc length, and the contour parameter there."""
+    parts = zip(_loaded(contact, _FINE), _free(contact, _FINE), strict=True)
+    s, x, y = (np.concatenate(part)[:, 0] for part in parts)
+    taper = contact.vibrissa.unloaded.taper(s)
+    found = [_gaps(contour, x, y, taper) for contour in objects]
+    which = int(np.argmin([(gap - taper).min() for gap, _ in found]))
+    gap, t = found[which]
+    at = int(np.argmin(gap - taper))
+    return which, float(s[at]), float(t[at])
 
 
 def _starts_outside(contact: States) -> Booleans:
@@ -73,7 +102,8 @@ def _passes_corners(contour: Contour, contact: States) -> Booleans:
         y = corners.eta - taper * np.cos(corners.alpha) - offset_point.eta[:, None]
         onward = np.where(one.side > 0, -1.0, 1.0)[:, None]
         along, into = onward * (x * cos + y * sin), y * cos - x * sin
-        near = (along > -_BESIDE) & (along < np.minimum(_BESIDE, 1 - s[few])[:, None])
+        behind = _BESIDE if one.inner is None else np.minimum(_BESIDE, one.inner.apart)[:, None]
+        near = (along > -behind) & (along < np.minimum(_BESIDE, 1 - s[few])[:, None])
         back = np.maximum(-along, 0.0)
         rod, force = one.vibrissa.rod, one.force
         push = force if rod is None else force * rod.flexibility(s[few])
@@ -83,10 +113,10 @@ def _passes_corners(contour: Contour, contact: States) -> Booleans:
     return clear
 
 
-def _bends_one_way(contact: States) -> Booleans:
+def bends_one_way(contact: States) -> Booleans:
     """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
     vibrissa, natural = contact.vibrissa, contact.vibrissa.natural_curvature
-    if any(vibrissa.weight):
+    if any(vibrissa.weight) or contact.inner is not None:
         return np.zeros(len(contact.force), dtype=bool)
     if vibrissa.rod is not None:
         # The moment about places on the way to the clamp grows, and then may fall to the clamp's.
@@ -99,7 +129,8 @@ def _bends_one_way(contact: States) -> Booleans:
 
 
 def _is_outside(contour: Contour, contact: States) -> Booleans:
-    parts = zip(_loaded(contact), _free(contact), strict=True)
+    shares = _PLACES if contact.inner is None else _FINE
+    parts = zip(_loaded(contact, shares), _free(contact, _PLACES), strict=True)
     s, x, y = (np.concatenate(part) for part in parts)
     taper = contact.vibrissa.unloaded.taper(s)
     return np.asarray(_outside(contour, x, y, taper).all(axis=0))
@@ -114,13 +145,15 @@ def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
     return np.asarray(outside.all(axis=0))
 
 
-def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
+def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Arc length and place of parts of the loaded span, shape (k, n)."""
+    if contact.inner is not None:
+        return places(contact, shares)
     vibrissa, place = contact.vibrissa, contact.offset_point
     lean = np.arctan(vibrissa.friction)
     slope, push = contact.tip_angle - place.alpha - lean, np.hypot(1, vibrissa.friction)
     if vibrissa.rod is None:
-        s = contact.arc_length * (1 - _PLACES[:, None])
+        s = contact.arc_length * (1 - shares[:, None])
         part = vibrissa.back_to_clamp(
             np.broadcast_to(slope, s.shape),
             np.broadcast_to(contact.couple, s.shape),
@@ -150,13 +183,13 @@ def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
     return s, place.xi - along * cos + across * sin, place.eta - along * sin - across * cos
 
 
-def _free(contact: States) -> tuple[Floats, Floats, Floats]:
+def _free(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Arc length and place of parts of the free end, shape (k, n)."""
     rest, place, begin = contact.vibrissa.unloaded, contact.offset_point, contact.arc_length
     hung = contact.vibrissa.hung(contact.tip_angle, begin)
     if hung is not None:
         return hung.s.T, place.xi + hung.x.T, place.eta + hung.y.T
-    s = begin + (1 - begin) * _PLACES[:, None]
+    s = begin + (1 - begin) * shares[:, None]
     x, y, _ = rest.at(s)
     first_x, first_y, slope = rest.at(begin)
     x, y, turned = x - first_x, y - first_y, contact.tip_angle - slope
@@ -166,30 +199,38 @@ def _free(contact: States) -> tuple[Floats, Floats, Floats]:
 
 def _outside(contour: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
     """Whether the vibrissa, thicker than at its tip by `taper`, is outside; of any shape."""
+    return np.asarray(~(_gaps(contour, x, y, taper)[0] < taper - _INSIDE))
+
+
+def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats, Floats]:
+    """How far places are outside, and the contour parameter of what they are next to.
+
+    Of those that are farther than `taper`, by a tangent that says so.
+    """
     low, high = contour.t_range
     t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
     alpha, xi, eta = contour.at(t)[:3]
     ok = np.isfinite(xi) & np.isfinite(eta)
     t, alpha, xi, eta = (values[ok] for values in (t, alpha, xi, eta))
-    places = np.column_stack([x.ravel(), y.ravel()])
+    seen = np.column_stack([x.ravel(), y.ravel()])
     # One product for all: beyond[i, j] of place i and tangent j.
     normals = np.stack([np.sin(alpha), -np.cos(alpha)])
-    beyond = places @ normals - (xi * normals[0] + eta * normals[1])
+    beyond = seen @ normals - (xi * normals[0] + eta * normals[1])
     best = np.argmax(beyond, axis=1)
-    least = taper.ravel() - _INSIDE
-    outside = ~(beyond[np.arange(len(places)), best] < least)
-    left = np.flatnonzero(~outside)
+    gaps, nearest = beyond[np.arange(len(seen)), best], t[best]
+    left = np.flatnonzero(gaps < taper.ravel() - _INSIDE)
     if left.size:  # between two tangents there may be a better one
         begin, end = t[np.maximum(best[left] - 1, 0)], t[np.minimum(best[left] + 1, len(t) - 1)]
 
         def along(which: Integers, at: Floats) -> Floats:
             """Of the place, along the tangent: zero where the tangent is the best."""
             point = contour.at(at)
-            place = places[left[which]]
+            place = seen[left[which]]
             dx, dy = place[:, 0] - point.xi, place[:, 1] - point.eta
             return np.asarray(dx * np.cos(point.alpha) + dy * np.sin(point.alpha))
 
-        point = contour.at(zeros(along, begin, end))
-        dx, dy = places[left, 0] - point.xi, places[left, 1] - point.eta
-        outside[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha) >= least[left]
-    return np.asarray(outside.reshape(x.shape))
+        nearest[left] = zeros(along, begin, end)
+        point = contour.at(nearest[left])
+        dx, dy = seen[left, 0] - point.xi, seen[left, 1] - point.eta
+        gaps[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha)
+    return gaps.reshape(x.shape), nearest.reshape(x.shape)

@@ -1,13 +1,14 @@
 """The curve of equilibria of the general vibrissa: points on it, steps along it, kinks and folds.
 
-Its coordinates are contour parameter t, normal force f, excess w, and the parameter p of the
+Its coordinates are contour parameter t, normal force f, excess w, three numbers more of a second
+contact (`analytic.solver.general.pair`), and the parameter p of the
 clamp's way (`analytic.problem.poses`). Keller's pseudo-arclength
 continuation: a step along the tangent, and Newton's method back to the curve in the plane normal
 to it. The curve has a kink where the phases take turns and where the contour is not smooth.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,8 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Poses, Straight
-from analytic.solver.general.states import INSIDE, Vibrissa, balance
+from analytic.solver.general.pair import Pair
+from analytic.solver.general.states import FORCES, INSIDE, Vibrissa, balance
 
 _NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
@@ -24,9 +26,7 @@ _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
 _LEAST = 1e-8  # of a rate: what is least is then exact to its square
 _SEARCHES = 40
-_T, _F, _W, _P = range(4)
-_OTHERS = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
-_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
+_F, _W, _P = 1, 2, -1
 
 
 class Point(NamedTuple):
@@ -54,7 +54,7 @@ class Point(NamedTuple):
 class EquilibriumCurve(NamedTuple):
     """The curve of one vibrissa along one contour, within reach."""
 
-    contour: Contour
+    contour: Contour | Pair
     vibrissa: Vibrissa
     poses: Poses
     t_range: tuple[float, float]
@@ -68,18 +68,30 @@ class EquilibriumCurve(NamedTuple):
         return here
 
     def _loaded(self, z: Floats) -> Point:
-        here = self._point(z)
-        return here if here.direction[_F] > 0 else _reversed(here)
+        return _towards(self._point(z), _F)
+
+    def touched(self, guess: Floats, force: int) -> Point | None:
+        """The point near a guess where one of the forces is nothing, and grows from."""
+        guess[force] = 0.0
+        found = self._fixed(guess, force)
+        return found and _towards(found, force)
+
+    def onward(self, z: Floats) -> Point | None:
+        """The point of the curve near another one, the way's parameter as it is, on from there."""
+        found = self._fixed(z, _P)
+        return found and turned_round(_towards(found, _P))
 
     def advance(self, behind: Point | None, here: Point, length: float) -> tuple[Point, ...]:
         """The next points of the curve, at most a step ahead."""
         z = self._ahead(behind, here, length)
-        if z[_F] < 0:
-            return self._stopped(here, (here.z[_F] / (here.z[_F] - z[_F]), _F, 0.0, math.nan), z)
+        lost = [i for i in range(len(z))[FORCES] if z[i] < 0]
+        if lost:
+            places = [(here.z[i] / (here.z[i] - z[i]), i, 0.0, math.nan) for i in lost]
+            return self._stopped(here, min(places), z)
         places = self._places(here.z, z)
         if places:
             return self._stopped(here, min(places), z)
-        scale = self._scale(here.z)
+        scale = self.vibrissa.sizes(here.z)
         new = self._corrected(z, here.direction / scale**2, near=_NEAR * length)
         if new is None:
             return ()
@@ -112,7 +124,7 @@ class EquilibriumCurve(NamedTuple):
         found = self._fixed(guess, index) if share > _ASIDE else None
         if found is None or self._size(found.z - guess, here.z) > self._size(way, here.z):
             return ()
-        first = _along(found, way / self._scale(here.z) ** 2)
+        first = _along(found, way / self.vibrissa.sizes(here.z) ** 2)
         side, same_side = (self.vibrissa.side(np.array(z[_W])) for z in (here.z, first.z))
         if first.sense != here.sense or side != same_side:
             return ()
@@ -122,12 +134,12 @@ class EquilibriumCurve(NamedTuple):
         z[index] = after
         second = self._point(z)
         same = second.direction[index] * first.direction[index] > 0
-        return first, second if same else _reversed(second)
+        return first, second if same else turned_round(second)
 
     def turn(self, begin: Point, end: Point, rate: Callable[[Point], float]) -> Point | None:
         """Where something is least between two points of a smooth part."""
         chord = end.z - begin.z
-        normal = chord / self._scale(begin.z) ** 2
+        normal = chord / self.vibrissa.sizes(begin.z) ** 2
         length = float(chord @ normal)
         low, high = 0.0, 1.0
         rate_low, rate_high = rate(begin), rate(end)
@@ -155,16 +167,12 @@ class EquilibriumCurve(NamedTuple):
         Without a straight way of the clamp: how fast that goes jumps with the contour's curvature.
         """
         seen = slice(_P if isinstance(self.poses, Straight) else None)
-        scale = self._scale(here.z)
+        scale = self.vibrissa.sizes(here.z)
         a, b = ((point.direction / scale)[seen] for point in (here, new))
         return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))
 
-    def _scale(self, z: Floats) -> Floats:
-        """The size of the coordinates: the force's is its own."""
-        return np.array([1.0, max(self.vibrissa.least_force, z[_F]), 1.0, 1.0])
-
     def _size(self, way: Floats, at: Floats) -> float:
-        return math.hypot(*(way / self._scale(at)))
+        return math.hypot(*(way / self.vibrissa.sizes(at)))
 
     def _places(self, old: Floats, new: Floats) -> list[tuple[float, int, float, float]]:
         """Kinks between: share of the way, coordinate, and its value before and after."""
@@ -175,15 +183,24 @@ class EquilibriumCurve(NamedTuple):
                 sides = (before, after) if old[_W] < after else (after, before)
                 share = float((after - old[_W]) / (new[_W] - old[_W]))
                 places.append((share, _W, *sides))
-        low, high = sorted((old[_T], new[_T]))
-        back, on = (low, high) if new[_T] > old[_T] else (high, low)
-        for at in self.breaks[(self.breaks > low) & (self.breaks < high)]:
-            share = float((at - old[_T]) / (new[_T] - old[_T]))
-            places.append((share, _T, float(np.nextafter(at, back)), float(np.nextafter(at, on))))
-        ends = [at for at in self.t_range if low < at < high or new[_T] == at != old[_T]]
-        way = float(new[_T] - old[_T])
-        places += [(float(at - old[_T]) / way, _T, at, math.nan) for at in ends]
+        for i, t_range, breaks in self._contours:
+            begin, end = float(old[i]), float(new[i])
+            low, high = sorted((begin, end))
+            back, on = (low, high) if end > begin else (high, low)
+            for at in breaks[(breaks > low) & (breaks < high)]:
+                sides = float(np.nextafter(at, back)), float(np.nextafter(at, on))
+                places.append((float((at - begin) / (end - begin)), i, *sides))
+            ends = [at for at in t_range if low < at < high or end == at != begin]
+            places += [(float(at - begin) / (end - begin), i, at, math.nan) for at in ends]
         return places
+
+    @property
+    def _contours(self) -> Iterator[tuple[int, tuple[float, float], Floats]]:
+        """The places of the contour parameters, their ranges, and where the contour breaks."""
+        yield 0, self.t_range, self.breaks
+        if isinstance(self.contour, Pair):
+            inner = self.contour.inner
+            yield 3, inner.t_range, inner.breaks()
 
     def _point(self, z: Floats) -> Point:
         return self._with_direction(z)[0]
@@ -214,7 +231,8 @@ class EquilibriumCurve(NamedTuple):
                 return None
             z = z - step
             z[pinned] = value
-            if not z[_F] >= 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
+            ranges = ((low - 1 < z[i] < high + 1) for i, (low, high), _ in self._contours)
+            if not (all(ranges) and (z[FORCES] >= 0).all()):
                 return None
             if self._size(step, z) < near:
                 return point._replace(z=z)
@@ -222,22 +240,30 @@ class EquilibriumCurve(NamedTuple):
 
     def _fixed(self, z: Floats, index: int) -> Point | None:
         """The point of the curve with one coordinate as it is."""
-        normal = np.zeros(4)
+        normal = np.zeros_like(z)
         normal[index] = 1.0
         return self._corrected(z, normal, slice(index, index + 1))
 
 
+def _towards(point: Point, index: int) -> Point:
+    """The point, its direction that in which one of its coordinates grows."""
+    return point if point.direction[index] > 0 else turned_round(point)
+
+
 def _along(point: Point, way: Floats) -> Point:
     """The point, its direction that of a way."""
-    return point if point.direction @ way > 0 else _reversed(point)
+    return point if point.direction @ way > 0 else turned_round(point)
 
 
-def _reversed(point: Point) -> Point:
+def turned_round(point: Point) -> Point:
+    """The point, with the opposite direction."""
     return point._replace(direction=-point.direction, sense=-point.sense)
 
 
 def normal_to(slopes: Floats) -> Floats:
-    """The cross product of three rows, shape (..., 3, 4): what changes none of them."""
-    minors = np.moveaxis(slopes[..., _OTHERS], -2, -3)
+    """The cross product of n rows, shape (..., n, n + 1): what changes none of them."""
+    every = np.arange(slopes.shape[-1])
+    others = np.array([np.delete(every, k) for k in every])
+    minors = np.moveaxis(slopes[..., others], -2, -3)
     with np.errstate(invalid="ignore"):  # next to what no vibrissa can be
-        return np.asarray(_SIGNS * np.linalg.det(minors))
+        return np.asarray((-1.0) ** every * np.linalg.det(minors))

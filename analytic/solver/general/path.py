@@ -17,7 +17,8 @@ from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Poses
 from analytic.problem.rest import FirstTouch
 from analytic.solver.general.curve import EquilibriumCurve, Point, normal_to
-from analytic.solver.general.states import Vibrissa, balance
+from analytic.solver.general.pair import Pair
+from analytic.solver.general.states import FORCES, Vibrissa, balance
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -51,19 +52,21 @@ class Path(NamedTuple):
     """Equilibria in sweep order; a cell lies between two neighbours and is smooth.
 
     ``z`` has shape (n, 4): contour parameter, normal force, excess, and the parameter of the
-    clamp's way, that of a sweep its foot position; ``direction`` is its derivative by the curve's
-    length. ``complete`` is false if the curve was lost before its end.
+    clamp's way, that of a sweep its foot position; of two contacts (n, 7), with three numbers
+    before the last. ``direction`` is its derivative by the curve's length. ``complete`` is false if
+    the curve was lost before its end.
     """
 
     z: Floats
     direction: Floats
     complete: bool
     vibrissa: Vibrissa
+    contour: Contour | Pair
 
     @property
     def p(self) -> Floats:
         """Parameters of the clamp's way, shape (n,)."""
-        return self.z[:, 3]
+        return self.z[:, -1]
 
     @property
     def side(self) -> Integers:
@@ -120,14 +123,14 @@ class Path(NamedTuple):
             self.z[cells + 1],
             length * self.direction[cells + 1],
         )
-        z[:, 1] = np.maximum(z[:, 1], 0.0)
+        z[:, FORCES] = np.maximum(z[:, FORCES], 0.0)
         z[:, 2] = self.vibrissa.within(self.side[cells], z[:, 2])
         return z
 
     def length(self, cells: Integers) -> Floats:
         """The length of cells, as chords."""
         way = self.z[cells + 1] - self.z[cells]
-        way[:, 1] /= np.maximum(self.vibrissa.least_force, self.z[cells, 1])
+        way /= self.vibrissa.sizes(self.z[cells])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
 
 
@@ -166,14 +169,20 @@ def follow(
     # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
     reach = reach[0], contour.t_range[1]
     curve = EquilibriumCurve(contour, vibrissa, poses, reach, contour.breaks())
+    return follow_from(curve, curve.start(touch.t, touch.excess, touch.p))
+
+
+def follow_from(curve: EquilibriumCurve, start: Point) -> Path:
+    """Follow a curve from one of its points on."""
+    reach = curve.t_range
     for turn, step in _STEPS:
-        points = _points(curve, touch, turn, step)
+        points = _points(curve, start, turn, step)
         complete = _ended(points, reach)
         if complete:
             break
     points = _with_turns(curve, _exact(curve, points))
     z, direction = (np.array(column) for column in zip(*(p[:2] for p in points), strict=True))
-    return Path(z, direction, complete, vibrissa)
+    return Path(z, direction, complete, curve.vibrissa, curve.contour)
 
 
 def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
@@ -184,13 +193,12 @@ def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     """
     z = np.array([point.z for point in points])
     side = curve.vibrissa.side(z[:, 2])
-    size = np.ones_like(z)
-    size[:, 1] = np.maximum(curve.vibrissa.least_force, z[:, 1])
+    size = curve.vibrissa.sizes(z)
     normal = np.array([point.direction for point in points]) / size**2
     for polishes in range(_POLISHES + 1):
         misses, slopes, _ = balance(curve.contour, curve.vibrissa, curve.poses, z)
         # One that is exact stays: it may stand on a kink.
-        poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, 1] > 0)
+        poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, FORCES] > 0).all(axis=1)
         if polishes == _POLISHES or not poor.any():
             break
         across = np.concatenate([slopes, normal[:, None]], axis=1)[poor]
@@ -204,11 +212,9 @@ def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     return [point._replace(z=z, direction=d) for point, z, d in exact]
 
 
-def _points(
-    curve: EquilibriumCurve, touch: FirstTouch, largest: float, length: float
-) -> list[Point]:
+def _points(curve: EquilibriumCurve, start: Point, largest: float, length: float) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
-    points, behind = [curve.start(touch.t, touch.excess, touch.p)], None
+    points, behind = [start], None
     # Past small facets the foot turns back at every corner, and goes on.
     slack = min(_FACET, float(np.diff(curve.breaks).max(initial=0.0)))
     for _ in range(_MOST + _A_BREAK * len(curve.breaks)):
@@ -238,8 +244,7 @@ def _hides(curve: EquilibriumCurve, begin: Point, end: Point) -> bool:
     The foot position may turn though its rates do not show it, unless the mean rate lies between
     those at the ends, nearly; and the other phase may come and go.
     """
-    way = end.z - begin.z
-    way[1] /= max(curve.vibrissa.least_force, begin.z[1])
+    way = (end.z - begin.z) / curve.vibrissa.sizes(begin.z)
     length, most = float(np.linalg.norm(way)), curve.vibrissa.most_turned
     mean = (end.p - begin.p) / length
     low, high = sorted((begin.rate, end.rate))
@@ -269,7 +274,7 @@ def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) 
     if len(points) == 1:
         return False
     here = points[-1]
-    if here.z[1] == 0 or here.z[0] in reach:
+    if (here.z[FORCES] == 0).any() or here.z[0] in reach:
         return True
     if not (here.amplitude > np.pi or here.z[2] > np.pi) or here.rate <= 0:
         return False

@@ -13,7 +13,7 @@ couple -mu r f remains at the contact. Of a heavy vibrissa the end beyond a cont
 (`analytic.problem.hanging`), and its moment remains there, too.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -30,12 +30,17 @@ from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
 from analytic.solver.general.span import Start, back_to_clamp
 
+if TYPE_CHECKING:
+    from analytic.solver.general.pair import InnerContact, Pair
+
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
 _DIFFERENCE = 1e-5  # of a force and an excess of their size: truncation and round-off are alike
 _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
 _ASIDE = 1e-5  # rad; to both sides, by which a heavy vibrissa is turned with its contact
 _BOTH_SIDES = np.array([[1.0], [-1.0]])
+FORCES = slice(1, -1, 3)
+"""The places of the forces among the numbers of a state on a way."""
 INSIDE = -5e-324
 """An excess of nothing, in Phase B."""
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
@@ -129,6 +134,12 @@ class Vibrissa(NamedTuple):
         """The force that counts as large: it turns the tip by half a radian, nearly."""
         return 1.0 if self.rod is None else self.rod.least_force
 
+    def sizes(self, z: Floats) -> Floats:
+        """The sizes of a state's numbers: 1, but for the forces, which have their own."""
+        sizes = np.ones_like(z)
+        sizes[..., FORCES] = np.maximum(self.least_force, z[..., FORCES])
+        return sizes
+
     @property
     def lean(self) -> float:
         """Angle from the surface of a cone to its axis [rad]."""
@@ -198,6 +209,7 @@ class States(NamedTuple):
     # amplitude of the span: from pi on, half a period, it is one that buckles [rad].
     amplitude: Floats
     vibrissa: Vibrissa
+    inner: "InnerContact | None" = None  # where it touches a second time, nearer to the clamp
 
     @property
     def tangent(self) -> Booleans:
@@ -306,8 +318,13 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     )
 
 
-def states_at(contour: Contour, z: Floats, vibrissa: Vibrissa) -> States:
-    """The states of given contour parameter, normal force and excess, shape (n, 3)."""
+def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> States:
+    """The states of given contour parameter, normal force and excess, shape (n, 3).
+
+    Those of two contacts have three numbers more: see `analytic.solver.general.pair`.
+    """
+    if not isinstance(contour, Contour):
+        return contour.states(z, vibrissa)
     return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
@@ -368,27 +385,37 @@ def with_rates(
     return here, StateRates(*rates)
 
 
+def rates_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> tuple[States, Floats]:
+    """`states_at`, and the derivatives of what they miss by the same numbers, shape (n, k, k)."""
+    if not isinstance(contour, Contour):
+        return contour.rates(z, vibrissa)
+    here, rates = with_rates(contour.at(z[:, 0]), z[:, 1].copy(), z[:, 2].copy(), vibrissa)
+    return here, np.stack(rates, axis=1)
+
+
 def misses(found: States, pose: Pose) -> Floats:
-    """What states miss in poses of the clamp: of its angle, its height and its place, (n, 3)."""
-    return np.stack(
-        [
-            found.angle - pose.angle,
-            found.height_residual + pose.foot_y,
-            found.foot_x - pose.foot_x,
-        ],
-        axis=1,
-    )
+    """What states miss in poses of the clamp: of its angle, its height and its place, (n, 3).
+
+    And what they miss at a second contact, if they have one.
+    """
+    missed = [
+        found.angle - pose.angle,
+        found.height_residual + pose.foot_y,
+        found.foot_x - pose.foot_x,
+    ]
+    inner = () if found.inner is None else found.inner.missed
+    return np.stack([*missed, *inner], axis=1)
 
 
 def balance(
-    contour: Contour, vibrissa: Vibrissa, poses: Poses, z: Floats
+    contour: "Contour | Pair", vibrissa: Vibrissa, poses: Poses, z: Floats
 ) -> tuple[Floats, Floats, States]:
     """What states on a way of the clamp miss, and its derivatives.
 
     By the contour parameter, the normal force, the excess and the way's parameter, shape (n, 4).
     """
-    here, rates = with_rates(contour.at(z[:, 0]), z[:, 1].copy(), z[:, 2].copy(), vibrissa)
-    pose, rate = poses.at(z[:, 3]), poses.rate(z[:, 3])
-    by_p = np.stack([-rate.angle, rate.foot_y, -rate.foot_x], axis=1)
-    slopes = np.concatenate([np.stack(rates, axis=1), by_p[:, :, None]], axis=2)
-    return misses(here, pose), slopes, here
+    here, rates = rates_at(contour, z[:, :-1], vibrissa)
+    pose, rate = poses.at(z[:, -1]), poses.rate(z[:, -1])
+    by_p = np.zeros((*rates.shape[:2], 1))
+    by_p[:, :3, 0] = np.stack([-rate.angle, rate.foot_y, -rate.foot_x], axis=1)
+    return misses(here, pose), np.concatenate([rates, by_p], axis=2), here

@@ -6,8 +6,9 @@ from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Pose, Poses
+from analytic.solver.general.pair import Pair
 from analytic.solver.general.path import Path
-from analytic.solver.general.states import States, Vibrissa, misses, states_at, with_rates
+from analytic.solver.general.states import States, Vibrissa, misses, rates_at, states_at
 
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
 _ASIDE = 1e-6  # a state may lie so far beyond its cell: close to a fold p does not distinguish
@@ -24,14 +25,13 @@ def solve_beside(
     return states_at(contour, z, vibrissa)
 
 
-def slopes_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
+def slopes_at(contour: Contour | Pair, vibrissa: Vibrissa, z: Floats) -> Floats:
     """Derivatives of what states miss by contour parameter, force and excess."""
-    _, rates = with_rates(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-    return np.stack(rates, axis=1)
+    return rates_at(contour, z, vibrissa)[1]
 
 
 def solve_near(
-    contour: Contour, vibrissa: Vibrissa, pose: Pose, start: Floats
+    contour: Contour | Pair, vibrissa: Vibrissa, pose: Pose, start: Floats
 ) -> tuple[Floats, Booleans]:
     """Contour parameter, force and excess in each pose, and whether in balance."""
 
@@ -47,19 +47,18 @@ def solve_near(
 
 
 def solve_places(
-    contour: Contour, vibrissa: Vibrissa, path: Path, poses: Poses, p: Floats
+    contour: Contour | Pair, vibrissa: Vibrissa, path: Path, poses: Poses, p: Floats
 ) -> tuple[Floats, Booleans]:
     """Contour parameter, force and excess of the state at each parameter of the clamp's way.
 
     Newton's method starts from the cubic through the path's points and directions.
     """
     cells = path.cells(p)
-    guess = path.at(cells, path.share(cells, p, 3))
+    guess = path.at(cells, path.share(cells, p, -1))
     begin, way, length = path.z[cells], path.z[cells + 1] - path.z[cells], path.length(cells)
-    scale = np.ones_like(begin)
-    scale[:, 1] = np.maximum(vibrissa.least_force, begin[:, 1])
+    scale = vibrissa.sizes(begin)
 
-    z, balanced = solve_near(contour, vibrissa, poses.at(p), guess[:, :3])
+    z, balanced = solve_near(contour, vibrissa, poses.at(p), guess[:, :-1])
     there = np.column_stack([z, p])
     along = np.einsum("nk,nk->n", (there - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((there - guess) / scale, axis=1)

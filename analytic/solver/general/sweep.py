@@ -1,18 +1,19 @@
 """A sweep of the general vibrissa at given stations."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
-from analytic.problem.contours.contour import Contour
+from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
 from analytic.problem.poses import Pose, Poses
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
+from analytic.solver.general.chain import clear_state, joined, second_contacts, with_second_contacts
 from analytic.solver.general.clearance import is_clear, is_rest_clear
-from analytic.solver.general.path import EVENTS, follow, located
-from analytic.solver.general.states import States, Vibrissa, states_at, with_rates
+from analytic.solver.general.path import EVENTS, Path, follow, located
+from analytic.solver.general.states import Vibrissa, rates_at, states_at
 from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
@@ -39,55 +40,79 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
     if case.touch is None:
         none = np.zeros(len(p), dtype=bool)
         return Solved(columns, dict.fromkeys(EVENTS), none, np.empty((0, 3)))
-    path = follow(contour, vibrissa, case.touch, case.reach, poses)
-    last = path.p[path.snap_off]
-    held = (p < path.p[0]) & (p >= last - _ROUNDING * max(1.0, abs(last)))
-    past = (p < path.p[0]) & ~held
-    lost = past & (not path.complete)
+    first = follow(contour, vibrissa, case.touch, case.reach, poses)
+    paths = with_second_contacts((contour,), first, poses)
+    holder = _holders(paths, p)
+    held = holder >= 0
+    past = (p < first.p[0]) & ~held
+    lost = past & (not paths[-1].complete)
     beyond = Pose(*(values[past] for values in pose))
     lost[past] |= ~is_rest_clear(contour, vibrissa, beyond)
 
-    columns = without(columns, lost, "diverged" if not path.complete else "touches again")
+    unknown = len(paths) == 1 and not first.complete
+    columns = without(columns, lost, "diverged" if unknown else "touches again")
     columns["foot_x"] = pose.foot_x * beam.length
+    if len(paths) > 1:
+        columns |= {name: np.full(len(p), np.nan) for name in SECOND_CONTACT}
     places = np.full((len(p), 3), np.nan)
-    if held.any():
-        z, found = solve_places(contour, vibrissa, path, poses, p[held])
-        touching = states_at(contour, z, vibrissa)
-        places[held] = np.where(found[:, None], z, np.nan)
+    for i, path in enumerate(paths):
+        here = holder == i
+        if not here.any():
+            continue
+        z, found = solve_places(path.contour, vibrissa, path, poses, p[here])
+        touching = states_at(path.contour, z, vibrissa)
+        if touching.inner is None:
+            places[here] = np.where(found[:, None], z, np.nan)
         solved = to_columns(touching, Units.of(beam))
-        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(touching, poses, p[held])
+        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(path, z, poses, p[here])
         solved["status"][sticks] = STATUS_NUMBER["sticks"]
-        solved = without(solved, ~is_clear(contour, touching), "touches again")
-        for name in COLUMNS[1:]:
-            columns[name][held] = solved[name]
-        for name in (*CLAMP_READINGS, *CONTACT):
-            columns[name][held] = np.where(found, solved[name], np.nan)
-        columns["status"][held] = np.where(found, solved["status"], STATUS_NUMBER["diverged"])
+        solved = without(solved, ~is_clear(path.contour, touching), "touches again")
+        words = {"phase": solved.pop("phase"), "status": solved.pop("status")}
+        for name in solved.keys() - {"foot_x"}:
+            columns[name][here] = np.where(found, solved[name], np.nan)
+        columns["phase"][here] = words["phase"]
+        columns["status"][here] = np.where(found, words["status"], STATUS_NUMBER["diverged"])
+    return Solved(columns, _events(paths), held | lost, places[held | lost])
+
+
+def _holders(paths: Sequence[Path], p: Floats) -> Integers:
+    """Which path has the state at each parameter of the way; -1 where none has."""
+    holder = np.full(len(p), -1)
+    for i, path in enumerate(paths):
+        last = path.p[path.snap_off]
+        here = (p < path.p[0]) & (p >= last - _ROUNDING * max(1.0, abs(last)))
+        holder[here & (holder < 0)] = i
+    return holder
+
+
+def _events(paths: Sequence[Path]) -> dict[str, float | None]:
+    """Where on the way what happens happens."""
+    path = joined(paths)
     points = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
     del points["contact_length_minimum"]
     for name in ("phase_b_start", "phase_b_end", "back_start", "back_end"):
         i = points[name]
-        if i is not None and not _is_clear_at(contour, vibrissa, path.z[i : i + 1]):
+        if i is not None and not clear_state(paths, i, ())[1]:
             points[name] = None
-    return Solved(columns, located(points, path.p), held | lost, places[held | lost])
+    return located(points | second_contacts(paths), path.p)
 
 
-def _is_clear_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
-    found = states_at(contour, z, vibrissa)
-    return bool(is_clear(contour, found)[0])
-
-
-def _slides(found: States, poses: Poses, p: Floats) -> Booleans:
+def _slides(path: Path, z: Floats, poses: Poses, p: Floats) -> Booleans:
     """Whether the vibrissa slides on along the object as its clamp moves on.
 
     A place on it moves along the contour by what the contact does, less what the contact moves
     along the vibrissa.
     """
-    if found.vibrissa.friction == 0:
-        return np.ones(len(found.force), dtype=bool)
-    _, rates = with_rates(found.point, found.force, found.excess, found.vibrissa)
-    step = poses.rate(p)
-    moved = np.stack([step.angle, -step.foot_y, step.foot_x], axis=1)
-    change = np.linalg.solve(np.stack(rates, axis=1), moved[..., None])[..., 0]
-    slip = found.offset_point.stretch * change[:, 0] - np.where(found.tangent, change[:, 2], 0.0)
+    vibrissa = path.vibrissa
+    if vibrissa.friction == 0:
+        return np.ones(len(z), dtype=bool)
+    found, rates = rates_at(path.contour, z, vibrissa)
+    step, moved = poses.rate(p), np.zeros_like(z)
+    moved[:, :3] = np.stack([step.angle, -step.foot_y, step.foot_x], axis=1)
+    change = np.linalg.solve(rates, moved[..., None])[..., 0]
+    onward = np.where(found.tangent, change[:, 2], 0.0)
+    slip = found.offset_point.stretch * change[:, 0] - onward
+    if found.inner is not None:
+        slips = found.inner.point.stretch * change[:, 3] - (onward - change[:, 5])
+        slip = np.minimum(slip, slips)
     return np.asarray(slip >= -_STILL)

@@ -1,0 +1,155 @@
+"""A vibrissa that is curved towards the object and touches it in two places."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    catenary,
+    certify,
+    find_events,
+    polygon,
+    solve_sweep,
+)
+from analytic.from_clamp.shape import curvatures, deflected_shapes
+from analytic.problem.columns import SECOND_CONTACT
+from analytic.problem.table import as_table
+from analytic.solver.general.pair import Pair
+from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.sweep import solve
+
+ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_two_contacts.csv")
+# The reference's polygon, its right side longer: there the tip first touches it.
+CORNERS = polygon([(-1.2, 0.7), (-0.1, 0.25), (0.15, 0.25), (1.725, 1.075)])
+PROFILES = {"catenary(0.5,-0.8)": catenary(0.5, -0.8)}
+READ = {"F_Ax": "force_x", "F_Ay": "force_y", "M_Az": "moment_z"}
+PLACES = {
+    **{"alpha1": "contact_angle", "s1": "contact_arc_length"},
+    **{"contact1_x": "contact_x", "contact1_y": "contact_y"},
+    **{"f2": "second_contact_force", "alpha2": "second_contact_angle"},
+    **{"s2": "second_contact_arc_length"},
+    **{"contact2_x": "second_contact_x", "contact2_y": "second_contact_y"},
+}
+EXACT = {"rtol": 1e-11, "atol": 1e-11}
+
+
+def thin(natural):
+    return Beam(radius=0.0, natural_curvature=natural)
+
+
+def at_feet(case, foot_x):
+    return as_table(solve(case, np.array(foot_x)).columns)
+
+
+@pytest.mark.parametrize(
+    ("profile", "natural"), [*ROWS.groupby(["profile", "natural_curvature"]).groups]
+)
+def test_references(profile, natural):
+    rows = ROWS[(ROWS["profile"] == profile) & (ROWS["natural_curvature"] == natural)]
+    # At the other events one of the contacts is none.
+    rows = rows[rows["event"].isna() | rows["event"].str.startswith("phi1")]
+    found = at_feet(Case(thin(natural), PROFILES.get(profile, CORNERS)), rows["foot_x"])
+    assert (found["status"] == "ok").all() and (found["phase"] == "tangent").all()
+    for reference, column in (READ | PLACES).items():
+        np.testing.assert_allclose(found[column], rows[reference], **EXACT)
+    tip = found["tip_angle"] - natural * (1 - found["second_contact_arc_length"])
+    np.testing.assert_allclose(tip, rows["phi_2"], **EXACT)
+
+
+@pytest.mark.parametrize("natural", [0.5, 0.8])
+def test_events(natural):
+    rows = ROWS[ROWS["profile"].str.startswith("cat") & ROWS["natural_curvature"].eq(natural)]
+    first, last = rows.iloc[0], rows.iloc[-1]
+    found = find_events(PROFILES["catenary(0.5,-0.8)"], thin(natural))
+    for event, row in ((found.second_contact_start, first), (found.second_contact_end, last)):
+        np.testing.assert_allclose(event.foot_x, row["foot_x"], **EXACT)
+        for reference, column in READ.items():
+            np.testing.assert_allclose(getattr(event, column), row[reference], **EXACT)
+    corners = find_events(CORNERS, thin(0.5)).second_contact_end
+    np.testing.assert_allclose(corners.foot_x, ROWS["foot_x"].iloc[-1], **EXACT)
+    np.testing.assert_allclose(corners.force_y, ROWS["F_Ay"].iloc[-1], **EXACT)
+
+
+@pytest.mark.parametrize("end", ["second_contact_start", "second_contact_end"])
+def test_one_contact_follows_smoothly_from_two(end):
+    """Where the inner force is nothing, both have the same readings; and they go on steadily."""
+    profile, beam = catenary(0.5, -0.8), thin(0.5)
+    event = getattr(find_events(profile, beam), end)
+    two = Pair(profile, profile)
+    row = ROWS[ROWS["natural_curvature"] == 0.5].iloc[0 if end.endswith("start") else 13]
+    z = np.array([row[["alpha2", "f2"]].tolist()])
+    z = np.column_stack([z, row["phi_2"] - row["alpha2"], row["alpha1"], 0.0, 1 - row["s1"]])
+    vibrissa = Vibrissa(natural_curvature=0.5)
+    both, alone = states_at(two, z, vibrissa), states_at(profile, z[:, :3], vibrissa)
+    for name in ("moment", "up", "reach", "angle"):
+        np.testing.assert_allclose(getattr(both, name), getattr(alone, name), rtol=0, atol=1e-13)
+    near = at_feet(Case(beam, profile), event.foot_x + 1e-7 * np.array([1.0, -1.0]))
+    assert (near["status"] == "ok").all() and abs(np.diff(near["force_y"])[0]) < 1e-5
+    assert near["second_contact_x"].notna().sum() == 1
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    natural=st.floats(0.55, 1.2),
+    width=st.floats(0.3, 0.8),
+    height=st.floats(0.15, 0.4),
+    radius=st.sampled_from([0.0, 0.005, 0.02]),
+    friction=st.sampled_from([0.0, 0.1]),
+    stiffness=st.sampled_from([np.inf, 5.0]),
+)
+@pytest.mark.slow
+def test_other_values_against_integration(natural, width, height, radius, friction, stiffness):
+    """The certificate integrates from the clamp, and shares no integral with the solver."""
+    beam = Beam(radius=radius, natural_curvature=natural)
+    profile = catenary(width, height - 1)
+    case = Case(beam, profile, Sweep(40), clamp_stiffness=stiffness, friction=friction)
+    table = solve_sweep(case, certified=True).table
+    assert set(table["status"]) <= {"ok", "sticks", "touches again"}
+    here = table["status"].isin(["ok", "sticks"])
+    assert table.loc[here, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
+
+
+def test_mirrored_and_in_other_units(tmp_path):
+    left = solve_sweep(Case(thin(0.5), CORNERS, Sweep(40)))
+    right = solve_sweep(Case(thin(0.5), CORNERS, Sweep(40)).mirrored())
+    beam = Beam(length=10.0, radius=0.0, natural_curvature=0.05)
+    larger = solve_sweep(Case(beam, CORNERS.scaled(10), Sweep(40)))
+    for name, sign, unit in (("force", 1, 1e-2), ("angle", -1, 1), ("x", -1, 10), ("y", 1, 10)):
+        column = f"second_contact_{name}"
+        np.testing.assert_array_equal(right.values(column), sign * left.values(column))
+        np.testing.assert_allclose(larger.values(column), unit * left.values(column), rtol=1e-9)
+    back = Readings.read(left.write(tmp_path / "two.parquet"))
+    pd.testing.assert_frame_equal(back.table[[*SECOND_CONTACT]], left.table[[*SECOND_CONTACT]])
+    assert certify(back).max(axis=None) < 1e-11
+
+
+def test_a_planted_error_is_found():
+    found = solve_sweep(Case(thin(0.5), catenary(0.5, -0.8), Sweep(40)))
+    for column in ("second_contact_force", "second_contact_x", "contact_y", "force_y"):
+        table = found.table.assign(**{column: found.values(column) + 1e-6})
+        two = table["second_contact_x"].notna()
+        assert (certify(replace(found, table=table)).max(axis=1)[two] > 1e-8).all()
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_the_shape_that_is_drawn_goes_through_both_contacts(friction):
+    case = Case(thin(0.5), CORNERS, Sweep(40), friction=friction)
+    for found in (solve_sweep(case), solve_sweep(case.mirrored())):
+        x, y = deflected_shapes(found)
+        two = found.table["second_contact_x"].notna().to_numpy()
+        for at, kind in ((64, ""), (128, "second_")):
+            for drawn, axis in ((x, "x"), (y, "y")):
+                there = found.values(f"{kind}contact_{axis}")[two]
+                np.testing.assert_allclose(drawn[two, at], there, atol=1e-6)
+        kappa = curvatures(found, x, y)[two]
+        assert np.abs(kappa[:, 64] - kappa[:, 65]).max() < 0.1
+        np.testing.assert_allclose(np.abs(kappa[:, 128:]), 0.5, atol=1e-9)
