@@ -24,6 +24,7 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from analytic.checks.of_two import touches_twice
 from tests.analytic.noisy import noisy
 
 OBJECTS = {
@@ -46,7 +47,9 @@ REAL = Case(
 
 def with_readings(readings):
     there = np.isfinite(readings.values("contact_x")) & np.isfinite(readings.values("force_x"))
-    return there & (np.hypot(readings.values("force_x"), readings.values("force_y")) > 1e-9)
+    return (
+        there & (np.hypot(readings.values("force_x"), readings.values("force_y")) > 1e-9)
+    ) & ~touches_twice(readings.table)
 
 
 def missed(found, readings):
