@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeAlias
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -28,56 +30,9 @@ LEVERS = {("moment_z", "force_x"): "along", ("moment_z", "force_y"): "across"}
 """What a sensor off the clamp takes for a moment: by reading and force, which way it is off."""
 _FEWEST = 4  # stations of a stretch whose slope is worth something
 
-# What a fault is called, and the least and the largest value that it leaves, in its unit: what is
-# off by more would hardly be the same experiment.
-_SOLVED: dict[str, tuple[str, float, float]] = {
-    "length": ("length of the vibrissa {size:+.2%} off", 0.8, 1.2),
-    "radius": (
-        "radius of the vibrissa {size:+.2e} L off (it is {stated:.2e} L), or the object's surface "
-        "as much too low",
-        -math.inf,
-        math.inf,
-    ),
-    "clamp": (
-        "discretisation of first order: the vibrissa is rigid over its first {size:.2%}, as with a "
-        "whole rigid segment at the clamp",
-        0.0,
-        0.2,
-    ),
-    "clamp_compliance": (
-        "clamp stiffness about {inverse:.3g} EI/L, not {stated_inverse:.3g}: the clamp gives way "
-        "otherwise than stated, as with half a cell too much of {cells:.3g} at the clamp",
-        0.0,
-        math.inf,
-    ),
-    "friction": (
-        "friction about {value:.3g}, not {stated:.3g}: the object rubs otherwise than stated",
-        0.0,
-        1.0,
-    ),
-    "natural_curvature": (
-        "natural curvature about {value:+.3g} /L, not {stated:.3g}: the vibrissa at rest is bent "
-        "otherwise than stated",
-        -1.5,
-        1.5,
-    ),
-    "clamp_angle": (
-        "clamp leaning by about {value:+.3g} rad, not {stated:.3g}, to the left of the upright",
-        -0.5,
-        0.5,
-    ),
-    "height": (
-        "height of the object (or the foot's, the other way) {size:+.2e} L off",
-        -0.1,
-        0.1,
-    ),
-    "tip_radius": (
-        "tip radius about {value:.2e} L, not {stated:.2e}: the vibrissa is a cone, or another one",
-        -1.0,
-        -0.05,
-    ),
-}
-_LARGEST = {"radius": 0.1, "clamp_compliance": 2.0}  # of which only the change is limited
+_SOLVED: dict[str, Any] = tomllib.loads(
+    Path(__file__).with_name("faults.toml").read_text(encoding="utf-8")
+)
 
 
 @dataclass(frozen=True)
@@ -207,11 +162,11 @@ def _between(there: Floats, x: Floats, rows: Floats) -> Floats:
 
 def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:
     """The faults whose signatures the closed form gives, where it can be solved with them."""
-    for fault, (_, least, most) in _SOLVED.items():
+    for fault, known in _SOLVED.items():
         stated, unit = _stated(exact, fault)
-        lowest, highest = least - stated / unit, most - stated / unit
-        if fault in _LARGEST:
-            lowest, highest = max(lowest, -_LARGEST[fault]), _LARGEST[fault]
+        lowest, highest = (known[end] - stated / unit for end in ("least", "most"))
+        if "change" in known:
+            lowest, highest = max(lowest, -known["change"]), known["change"]
         if not lowest < highest:
             continue  # what varies along the vibrissa has no such number
         change = partial(_change, exact, fault, scale)
@@ -241,7 +196,7 @@ def _text(exact: Resolved, fault: str, size: float) -> str:
     ours = exact.case.beam.length if fault == "tip_radius" else abs(unit)
     value, stated = (stated + size * unit) / ours, stated / ours
     inverse, stated_inverse = (1 / x if x > 0 else math.inf for x in (value, stated))
-    return _SOLVED[fault][0].format(
+    said: str = _SOLVED[fault]["text"].format(
         size=size,
         value=value,
         stated=stated,
@@ -249,6 +204,7 @@ def _text(exact: Resolved, fault: str, size: float) -> str:
         cells=abs(0.5 / (1 / inverse - 1 / stated_inverse)) if inverse != stated_inverse else 0,
         stated_inverse=stated_inverse,
     )
+    return said
 
 
 def _change(exact: Resolved, fault: str, scale: Floats, size: float) -> Floats | None:
