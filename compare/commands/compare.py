@@ -100,11 +100,11 @@ def compare(
     compared with the reference and with each other; there --column, --beam and --direction hold for
     those of rigs. Passes that `rig` wrote are compared as one: their mean, with their scatter.
     """
-    first, candidates = candidates[0], pass_files(candidates)
-    passes = len(candidates) > 1 and are_passes(candidates)
     job = None if Path(reference).suffix.lower() in TABLES else load_case(reference)
     stored = [Path(reference)] if job is None else []
-    require_readings([*stored, *candidates])
+    require_readings(stored)
+    first, candidates = candidates[0], pass_files(candidates)
+    passes = len(candidates) > 1 and are_passes(candidates)
     kind = _kind(job, stored, candidates[:1] if passes else candidates)
     raw = kind == ONE and bool(column or reference_column)  # then our files are read as a rig's
     rigs = raw or passes or not no_rigs([*stored, *candidates])
