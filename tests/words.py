@@ -29,6 +29,7 @@ _BANNED = {re.compile(rf"(?<![A-Za-z])(?:{x})(?![A-Za-z])", re.I): y for x, y in
 _ANY = re.compile(rf"(?<![a-z])(?:{'|'.join(BETTER)})(?![a-z])")  # in small letters
 
 _NO_WORDS = re.compile(r"^```.*?^```$|<!--.*?-->|(?<=\])\([^)]*\)", re.M | re.S)
+_NO_PAGES = ("CHANGELOG.md", "paper.md")
 _LETTER = re.compile(r"\w")
 
 
@@ -58,8 +59,8 @@ def offences() -> list[str]:
 
 
 def lengths() -> dict[str, int]:
-    """Words of each page but the list of changes: of text and tables, not of code or addresses."""
-    pages = [path for path in files() if path.suffix == ".md" and path.name != "CHANGELOG.md"]
+    """Words of each page but the list of changes and the paper, without code and addresses."""
+    pages = [path for path in files() if path.suffix == ".md" and path.name not in _NO_PAGES]
     found = {}
     for path in pages:
         text = _NO_WORDS.sub(" ", path.read_text(encoding="utf-8"))

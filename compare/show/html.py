@@ -1,7 +1,10 @@
 """A document as one offline HTML file, in light and dark, on paper and on a telephone."""
 
+import re
 from functools import cache
 from typing import TYPE_CHECKING
+
+from markupsafe import Markup, escape
 
 from compare.show.colophon import colophon
 from compare.show.document import Document, Table
@@ -30,6 +33,15 @@ def _template() -> "Template":
         lstrip_blocks=True,
     )
     environment.filters.update(
-        kind=lambda block: type(block).__name__, svg=inline_svg, embedded=embedded, turning=turning
+        kind=lambda block: type(block).__name__,
+        svg=inline_svg,
+        embedded=embedded,
+        turning=turning,
+        code=_code,
     )
     return environment.get_template("document.html.j2")
+
+
+def _code(text: object) -> Markup:
+    """Text whose words between back quotes are code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))

@@ -23,9 +23,9 @@ PHASE_NAMES = {"free": "free", "tip": "A: tip contact", "tangent": "B: tangentia
 READING_COLOURS = {"force_x": BLUE, "force_y": ORANGE, "moment_z": GREEN}
 READING_MARKERS = {"force_x": "o", "force_y": "s", "moment_z": "^"}
 SYMBOLS = {
-    "force_x": "$F_{Ax}$",
-    "force_y": "$F_{Ay}$",
-    "moment_z": "$M_{Az}$",
+    "force_x": "force_x",
+    "force_y": "force_y",
+    "moment_z": "moment_z",
     "contact_arc_length": "$s_1$",
 }
 UNITS = {
@@ -34,7 +34,7 @@ UNITS = {
     "moment_z": "$EI/L$",
     "contact_arc_length": "$L$",
 }
-FOOT = "foot $x_0$ / $L$"
+FOOT = "foot_x / $L$"
 
 
 class Along(NamedTuple):

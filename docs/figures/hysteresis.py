@@ -26,12 +26,12 @@ def hysteresis(name: str = "rubbing", turns: tuple[float, ...] = (1.2, 0.2)) -> 
     force, moment, snap_off = figure.subplots(1, 3)
     case = named_case(name)
     for ax, reading, symbol in (
-        (force, "force_x", "$F_{Ax}$ / ($EI/L^2$)"),
-        (moment, "moment_z", "$M_{Az}$ / ($EI/L$)"),
+        (force, "force_x", "force_x / ($EI/L^2$)"),
+        (moment, "moment_z", "moment_z / ($EI/L$)"),
     ):
         _there_and_back(ax, case, turns, reading)
         ax.set_ylabel(symbol)
-        ax.set_xlabel("$x_0$ / $L$   (on is to the left)")
+        ax.set_xlabel("foot_x / $L$   (on is to the left)")
     moment.legend(fontsize=SMALL, frameon=False, loc="lower center")
     for one, colour in _OBJECTS.items():
         smooth = named_case(one)

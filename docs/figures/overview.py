@@ -59,7 +59,7 @@ def _sketch(ax: Axes, exact: Readings) -> None:
     ax.annotate(
         "", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": style.INK}
     )
-    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=style.INK)
+    ax.text(-2.2, -0.22, "the foot (foot_x) is swept this way", va="center", color=style.INK)
     ax.set_aspect("equal")
     ax.set_xlim(-3.1, 4.35)
     ax.set_ylim(-0.35, 1.12)
@@ -90,16 +90,16 @@ def _signs(ax: Axes, x0: float) -> None:
     ax.annotate("", (cx + push[0], cy + push[1]), (cx, cy), arrowprops=_ARROW)
     ax.text(cx + push[0] + 0.04, cy + push[1] - 0.02, "$f$", color=_FORCE)
     ax.annotate("", (x0 - 0.06, 0), (x0 - 0.42, 0), arrowprops=_ARROW)
-    ax.text(x0 - 0.44, 0.02, "$F_{Ax}$", color=_FORCE, ha="right", va="bottom")
+    ax.text(x0 - 0.44, 0.02, "force_x", color=_FORCE, ha="right", va="bottom")
     ax.annotate("", (x0, 0.42), (x0, 0.02), arrowprops=_ARROW)
-    ax.text(x0 - 0.05, 0.36, "$F_{Ay}$", color=_FORCE, ha="right")
+    ax.text(x0 - 0.05, 0.36, "force_y", color=_FORCE, ha="right")
     ax.annotate(
         "",
         (x0 + 0.02, 0.17),
         (x0 + 0.17, -0.06),
         arrowprops={**_ARROW, "connectionstyle": "arc3,rad=0.5"},
     )
-    ax.text(x0 + 0.22, -0.06, "$M_{Az}$", color=_FORCE)
+    ax.text(x0 + 0.22, -0.06, "moment_z", color=_FORCE)
     ax.text(x0 - 0.62, -0.22, "clamp on vibrissa, counted positive", color=_FORCE, fontsize=9)
 
 

@@ -133,7 +133,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
     for ax, expected in zip(axes, (0, 1), strict=True):
         shade_reference(ax, comparison)
         ax.axhline(expected, color=style.GREY, linewidth=0.8, linestyle="--")
-    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
+    axes[0].set_ylabel(r"(2 force_y - moment_z$^2$) / $2f$" + "\nzero in Phase B")
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
     axes[1].set_xlabel(
         f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"

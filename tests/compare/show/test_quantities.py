@@ -64,7 +64,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
 def test_a_case_without_units_names_none():
     exact = solve_sweep(named_case("parabola"))
     assert "of the readings&#39; own units" in written_page(compare(exact, exact))
-    assert foot_label(exact) == "foot $x_0$ / $L$"
+    assert foot_label(exact) == "foot_x / $L$"
     assert exact.plot()[0].get_ylabel() == "force_x"
 
 
