@@ -77,7 +77,7 @@ def _in_motion(job: Job, motion: Motion, target: float | None) -> Measured:
     content = found.to_dict()
     if target is not None:
         fastest = _fastest(job, motion, runs, target)
-        content["fastest"] = fastest.to_dict()
+        content["fastest"] = fastest
         tried = ", ".join(f"{v:.3g}: {error:.1e}" for v, error in fastest.tried.items())
         terminal.print_line(
             f"Fastest for {target:g}: {fastest.speed:.3g} L/T1, {fastest.error:.1e} rms, "

@@ -26,7 +26,6 @@ from compare.explain.parts import (
 )
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
-from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
 from compare.sense.noise import scales
 
@@ -81,11 +80,9 @@ def budget(
     runs: Mapping[str, Readings],
     variations: Mapping[str, Readings],
     faceted: Readings | None = None,
-    tolerances: Tolerances | None = None,
 ) -> Budget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
-    tolerances = Tolerances() if tolerances is None else tolerances
-    kept = common_stations(exact, [*runs.values()], tolerances.snap_off_window)
+    kept = common_stations(exact, [*runs.values()])
     # One that is varied may touch again, or stick, where the reference does not.
     for varied in variations.values():
         kept &= np.isfinite([varied.values(name) for name in CLAMP_READINGS]).all(axis=0)
@@ -139,7 +136,7 @@ def budget(
     checks = {"softness": shifted}
     if faceted is not None:
         # A vibrissa curved towards the object touches a straight facet twice, with no readings.
-        solved = common_stations(exact, [faceted], tolerances.snap_off_window)[kept]
+        solved = common_stations(exact, [faceted])[kept]
         if solved.any():
             checks["facets"] = shared.off(faceted)[:, solved]
     parts = parts_of(PARTS, steps)
@@ -164,12 +161,9 @@ def budget(
     )
 
 
-def largest_rms(
-    exact: Readings, candidate: Readings, tolerances: Tolerances | None = None
-) -> float:
+def largest_rms(exact: Readings, candidate: Readings) -> float:
     """The largest of the three readings' disagreements, as a budget counts it."""
-    window = (Tolerances() if tolerances is None else tolerances).snap_off_window
-    kept = common_stations(exact, [candidate], window)
+    kept = common_stations(exact, [candidate])
     return float(rms(Shared(exact, kept).off(candidate)).max())
 
 

@@ -20,7 +20,6 @@ from compare.explain.parts import (
     parts_of,
     unexplained,
 )
-from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
 from mujoco_models.user_model.names import OwnModel
@@ -106,12 +105,10 @@ def slower_and_finer_of_model(
 def motion_budget(
     exact: Readings,
     runs: Mapping[str, Readings],
-    tolerances: Tolerances | None = None,
     of_our_chain: bool = False,
 ) -> MotionBudget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
-    window = (tolerances or Tolerances()).snap_off_window
-    kept = common_stations(exact, [*runs.values()], window)
+    kept = common_stations(exact, [*runs.values()])
     shared = Shared(exact, kept)
     run = {name: shared.signal(readings) for name, readings in runs.items()}
     slow, middle, fast = (run[name] for name in THREE_SPEEDS if name in run)

@@ -9,6 +9,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.shown import Shown
+from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off, rms
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
@@ -105,7 +106,9 @@ class Shared:
         return self.signal(readings) - self.signal(self.exact)
 
 
-def common_stations(exact: Readings, runs: Iterable[Readings], window: float) -> Booleans:
+def common_stations(
+    exact: Readings, runs: Iterable[Readings], window: float = Tolerances.snap_off_window
+) -> Booleans:
     """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
     along = exact.running_values
     kept = np.ones(len(along), dtype=bool)

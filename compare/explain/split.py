@@ -113,7 +113,7 @@ def split(
 
 
 def _measured(reference: Readings, candidate: Readings) -> Measurement:
-    return measure(reference, candidate, Tolerances().snap_off_window)
+    return measure(reference, candidate, Tolerances.snap_off_window)
 
 
 def _rms(found: Measurement) -> dict[str, float]:

@@ -1,1 +1,1 @@
-"""The callers of MuJoCo: the sweeps that a budget needs, and the overview picture."""
+"""The callers of MuJoCo: the sweeps that a budget needs, and what a user's model is."""

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from analytic import InputError, Readings
 from compare.explain.budget import largest_rms
@@ -26,10 +25,6 @@ class Fastest:
     seconds: float  # of that sweep; CPU time
     at_rest: float  # what is left at rest
     tried: dict[float, float]  # error by speed, of all sweeps
-
-    def to_dict(self) -> dict[str, Any]:
-        """What ``motion-budget.json`` holds."""
-        return asdict(self)
 
 
 def find_fastest(

@@ -12,7 +12,6 @@ import numpy as np
 from analytic import Case, InputError, Readings
 from analytic.problem.mirror import leftward
 from compare.explain.parts import Shared, common_stations
-from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
 from mujoco_models import simulate_sweep
 from mujoco_models.allowed import BeamKind
@@ -94,6 +93,6 @@ def _error(reference: Readings, moved: Readings) -> float:
 
     What chatters there, or has lost its contact, counts as it is.
     """
-    kept = common_stations(reference, [], Tolerances().snap_off_window)
+    kept = common_stations(reference, [])
     off = float(rms(Shared(reference, kept).off(moved)).max())
     return math.inf if math.isnan(off) else off
