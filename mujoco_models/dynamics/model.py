@@ -11,7 +11,7 @@ from analytic.problem.poses import Pose, Poses
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam
-from mujoco_models.dynamics.moving import SteppedModel
+from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
 from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
@@ -20,11 +20,7 @@ from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
 
-# (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
-# which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
-MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
 _FIRST = 2 * np.pi  # rad/T1
-_CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
 # Of MuJoCo's solver; its cost goes with the square of what is out of balance. With 1e-10 a sweep of
 # ten segments in `implicitfast` stayed 3.4e-4 off the one at rest, however slow it was.
 _TOLERANCE = 1e-16
@@ -89,29 +85,7 @@ class MovingModel(SteppedModel):
         if motion.solref is not None:
             model.geom_solref[geoms] = motion.solref
         model.geom_gap[geoms] = 0  # a contact that carries no force costs time
-        if motion.friction:
-            self._check_step(motion, geoms)
-            model.geom_condim[geoms] = 3
-            model.geom_friction[geoms, 0] = motion.friction
-
-    def _check_step(self, motion: Motion, geoms: Integers) -> None:
-        """Raise InputError for a step in which MuJoCo's friction overshoots.
-
-        It accelerates a contact that slides at v by -b v, as far as its cone lets it, also with the
-        integrator that treats springs and normals implicitly. With b times the step of 7, the tip
-        flies off and comes back for ever.
-        """
-        stiffness, damping = self.model.geom_solref[geoms].T
-        direct = stiffness < 0
-        decay = np.where(direct, -damping, 2 / (motion.solimp * np.where(direct, 1.0, stiffness)))
-        longest = 1 / float(decay.max())
-        if motion.timestep > longest:
-            raise InputError(
-                "motion.timestep",
-                motion.timestep,
-                f"at most {longest:.2g} T1 with friction and contacts as stiff as these",
-                "shorten it, or give a lower contact_stiffness: with 0.002 T1, 1e3 is usual",
-            )
+        self._rub(motion, geoms)
 
     @property
     def foot_x(self) -> float:
@@ -125,9 +99,7 @@ class MovingModel(SteppedModel):
 
     def step(self, speed: float) -> None:
         """By the force on a heavy carriage that accelerates it so."""
-        self.time = self.now
-        change = -speed - float(self.data.qvel[0])
-        self.data.qfrc_applied[0] = _CARRIAGE * MASS * change / self.model.opt.timestep
+        self._drive(-speed)
         if self._leaves_out:
             self._leave_out()
         self._advance()
@@ -205,7 +177,7 @@ def _spec(
         name="drive",
         type=mujoco.mjtJoint.mjJNT_SLIDE,
         axis=[np.cos(start.angle), -np.sin(start.angle), 0],
-        armature=_CARRIAGE * MASS,
+        armature=CARRIAGE * MASS,
     )
     give_mass(spec, beam.layout, motion)
     set_options(spec, motion)

@@ -7,10 +7,17 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.model.warned import has_diverged
+from mujoco_models.motion import Motion
+
+# (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
+# which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
+MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
+CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
 
 
 class SteppedModel(ABC):
@@ -59,6 +66,12 @@ class SteppedModel(ABC):
         sensors do.
         """
 
+    def _drive(self, speed: float) -> None:
+        """A heavy carriage, the model's first degree of freedom, is to have a speed after a step."""
+        self.time = self.now
+        change = speed - float(self.data.qvel[0])
+        self.data.qfrc_applied[0] = CARRIAGE * MASS * change / self.model.opt.timestep
+
     def _advance(self) -> None:
         """One step of MuJoCo's."""
         mujoco.mj_step(self.model, self.data)
@@ -73,6 +86,30 @@ class SteppedModel(ABC):
         geoms = np.flatnonzero(self._is_mine)
         moves = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0] > 0
         stiffen(self.model, geoms[moves], stiffness, impedance)
+
+    def _rub(self, motion: Motion, geoms: Integers) -> None:
+        """Give the vibrissa's geoms friction.
+
+        Raise InputError for a step in which MuJoCo's friction overshoots: it accelerates a contact
+        that slides at v by -b v, as far as its cone lets it, also with the integrator that treats
+        springs and normals implicitly. With b times the step of 7, the tip flies off and comes back
+        for ever.
+        """
+        if not motion.friction:
+            return
+        stiffness, damping = self.model.geom_solref[geoms].T
+        direct = stiffness < 0
+        decay = np.where(direct, -damping, 2 / (motion.solimp * np.where(direct, 1.0, stiffness)))
+        longest = 1 / float(decay.max())
+        if motion.timestep > longest:
+            raise InputError(
+                "motion.timestep",
+                motion.timestep,
+                f"at most {longest:.2g} T1 with friction and contacts as stiff as these",
+                "shorten it, or give a lower contact_stiffness: with 0.002 T1, 1e3 is usual",
+            )
+        self.model.geom_condim[geoms] = 3
+        self.model.geom_friction[geoms, 0] = motion.friction
 
     def _follow_inertia(self) -> None:
         """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""

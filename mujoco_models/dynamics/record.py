@@ -19,7 +19,7 @@ class Step:
 
     time: float  # since the start [T1]
     foot_x: float  # foot position [L]
-    clamp: Floats  # shape (3,); Force and moment, as the sensor gives them [EI/L^2, EI/L]
+    clamp: Floats  # force and moment, as the sensor gives them [EI/L^2, EI/L]
     touches: bool  # whether a contact is loaded
 
 
@@ -30,17 +30,20 @@ class StationMeans:
     are centred at the stations wherever the steps fall.
     """
 
-    def __init__(self, stations: Floats, average: float) -> None:
+    def __init__(
+        self, stations: Floats, average: float, names: tuple[str, ...] = CLAMP_READINGS
+    ) -> None:
+        self._names = names
         self._stations: list[float] = stations.tolist()
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
         self.first_touch: float | None = None
         self._lasting: float | None = None
         self._brief: float | None = None
-        self._last = Step(0.0, math.inf, np.zeros(3), touches=False)
+        self._last = Step(0.0, math.inf, np.zeros(len(names)), touches=False)
         self._begun, self._lost = 0.0, -math.inf
         self._pending: dict[str, Any] | None = None
-        self._sum = np.zeros(3)
+        self._sum = np.zeros(len(names))
         self._losses = 0
         self._apart = 0.0  # L; without contact, once there was one
         self._held = False  # at the station itself
@@ -72,7 +75,7 @@ class StationMeans:
         self._held = before.touches and after.touches
         self._pending = {
             "time": before.time + share * (after.time - before.time),
-            **{f"{name}_raw": float(x) for name, x in zip(CLAMP_READINGS, raw, strict=True)},
+            **{f"{name}_raw": float(x) for name, x in zip(self._names, raw, strict=True)},
             **state,
         }
 
@@ -128,16 +131,17 @@ class StationMeans:
 
     def _close(self) -> None:
         row = self._pending or {}
-        raw = [row[f"{name}_raw"] for name in CLAMP_READINGS]
+        raw = [row[f"{name}_raw"] for name in self._names]
         mean = self._sum / (2 * self._half) if self._half > 0 else np.array(raw)
-        row |= dict(zip(CLAMP_READINGS, mean.tolist(), strict=True))
+        row |= dict(zip(self._names, mean.tolist(), strict=True))
         row["contact_losses"] = self._losses
         apart = self._held and self._apart > _APART * 2 * self._half
         if row["status"] == "ok" and (apart or self._losses > 1):
             row["status"] = "chattering"
         self._mark_lost(row)
         self.rows.append(row)
-        self._pending, self._sum, self._losses, self._apart = None, np.zeros(3), 0, 0.0
+        self._pending, self._losses, self._apart = None, 0, 0.0
+        self._sum = np.zeros(len(self._names))
 
     def _mark_lost(self, row: dict[str, Any]) -> None:
         """Stations without contact between stations with one: it was lost, and found again."""

@@ -10,7 +10,7 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
-from analytic.problem.recorder import DIVERGED, Recorder
+from analytic.problem.recorder import DIVERGED, AnyRecorder, Kept, Recorder
 from mujoco_models.dynamics.model import MovingModel
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.dynamics.record import StationMeans, Step
@@ -87,25 +87,36 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     return MovingModel(beam, case.radius, obstacle, motion, case.poses, start)
 
 
-class Passes:
-    """Passes of the foot by the stations, on and back, and the sensors' filter in them."""
+class Drive:
+    """Steps of a foot that passes stations, and the sensors' filter in them."""
 
-    def __init__(
-        self,
-        model: SteppedModel,
-        case: Case,
-        motion: Motion,
-        source: str,
-        about: Mapping[str, Any],
-    ) -> None:
-        self._model, self._case, self._motion = model, case, motion
-        self._source, self._about = source, about
+    def __init__(self, model: SteppedModel, motion: Motion) -> None:
+        self._model, self._motion = model, motion
         self._filtered = np.array(model.clamp())
-        self._let_go = False  # on the way on
         # The share of the difference that a filter of first order follows in a step.
         self._follows = 1.0
         if motion.cutoff is not None:
             self._follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
+
+    def recorded(
+        self,
+        recorder: AnyRecorder[Kept],
+        record: StationMeans,
+        advance: Callable[[], None],
+        keep: Callable[[Kept], None],
+        back: bool = False,
+    ) -> Kept:
+        """The readings of all stations, whose rows the recorder shares with the record."""
+        with recorder.rescued(keep), unlogged():
+            try:
+                self._drive(record, back, advance)
+            except DivergedError as error:
+                record.rows.append(DIVERGED)
+                raise DivergedError(
+                    f"diverged at t = {self._model.time:.6g} T1: {error}; shorten the time step "
+                    f"({self._motion.timestep:g} T1), add armature, or soften contacts"
+                ) from error
+        return recorder.readings()
 
     def _drive(self, record: StationMeans, back: bool, advance: Callable[[], None]) -> None:
         """Step until the foot has passed all stations; it starts, or turns round, softly.
@@ -131,6 +142,22 @@ class Passes:
                 advance()
             before = after
 
+
+class Passes(Drive):
+    """Passes of the foot by the stations, on and back."""
+
+    def __init__(
+        self,
+        model: SteppedModel,
+        case: Case,
+        motion: Motion,
+        source: str,
+        about: Mapping[str, Any],
+    ) -> None:
+        super().__init__(model, motion)
+        self._case, self._source, self._about = case, source, about
+        self._let_go = False  # on the way on
+
     def swept(
         self,
         record: StationMeans,
@@ -155,16 +182,7 @@ class Passes:
             {"foot_x": case.foot_x[::-1] if back else case.foot_x},
             record.rows,
         )
-        with recorder.rescued(keep), unlogged():
-            try:
-                self._drive(record, back, advance)
-            except DivergedError as error:
-                record.rows.append(DIVERGED)
-                raise DivergedError(
-                    f"diverged at t = {self._model.time:.6g} T1: {error}; shorten the time step "
-                    f"({motion.timestep:g} T1), add armature, or soften contacts"
-                ) from error
-        readings = recorder.readings()
+        readings = self.recorded(recorder, record, advance, keep, back)
         self._let_go = record.last_touch is not None
         return readings
 

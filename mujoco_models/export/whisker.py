@@ -17,7 +17,8 @@ from analytic.problem.mirror import leftward
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.beams.vibrissa import Vibrissa
-from mujoco_models.dynamics.model import MASS, give_mass, set_options
+from mujoco_models.dynamics.model import give_mass, set_options
+from mujoco_models.dynamics.moving import MASS
 from mujoco_models.inspect.probe import probe_in
 from mujoco_models.model.spec import compiled
 from mujoco_models.motion import Motion

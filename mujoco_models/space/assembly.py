@@ -10,14 +10,14 @@ from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.model.spec import add_clamp_sensors, add_options, compiled
 
-_CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
+CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
 
 
 def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjModel:
     """Beam and body with a bead on each link, clamp sensors, and a foot along its tangent."""
     add_options(spec)
-    spec.option.ccd_iterations = _CCD_ITERATIONS
-    spec.body(FOOT).quat = _to(tangent)
+    spec.option.ccd_iterations = CCD_ITERATIONS
+    spec.body(FOOT).quat = leaning(tangent)
     for i in range(links):
         body = spec.body(link_name(i))
         (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
@@ -37,7 +37,7 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
     return compiled(spec)
 
 
-def _to(tangent: Floats) -> Floats:
+def leaning(tangent: Floats) -> Floats:
     """The shortest turn from y to a direction, as a quaternion."""
     x, y, z = tangent.tolist()
     size, found = math.hypot(x, z), np.zeros(4)
