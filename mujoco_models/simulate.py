@@ -6,7 +6,7 @@ MuJoCo itself is imported when one of them is called, not before.
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
@@ -136,29 +136,46 @@ def simulate_space(
     return run_space(case, chosen, advance, keep)
 
 
+@overload
 def simulate_motion(
     case: Case,
     motion: Motion | None = None,
     settings: Settings | None = None,
+    advance: Callable[[], None] = ...,
+    keep: Callable[[Readings], None] = ...,
+) -> Readings: ...
+@overload
+def simulate_motion(
+    case: "SpatialCase",
+    motion: Motion | None = None,
+    settings: "SpatialSettings | None" = None,
+    advance: Callable[[], None] = ...,
+    keep: "Callable[[SpatialReadings], None]" = ...,
+) -> "SpatialReadings": ...
+def simulate_motion(
+    case: "Case | SpatialCase",
+    motion: Motion | None = None,
+    settings: "Settings | SpatialSettings | None" = None,
     advance: Callable[[], None] = lambda: None,
-    keep: Callable[[Readings], None] = lambda _: None,
-) -> Readings:
+    keep: Callable[..., None] = lambda _: None,
+) -> "Readings | SpatialReadings":
     """Sweep `case` in MuJoCo at a steady speed, the beam with its mass, stepped by `mj_step`.
 
     Parameters
     ----------
-    case : Case
-        The problem; all that the simulation knows of it.
+    case : Case or SpatialCase
+        The problem; all that the simulation knows of it. In space the foot's way is straight, the
+        vibrissa a chain on balls, the body a sphere, an ellipsoid or a cylinder.
     motion : Motion, optional
         Speed, time step, integrator, damping and contact.
-    settings : Settings, optional
+    settings : Settings or SpatialSettings, optional
         Beam, segments and obstacle; contact stiffness and tolerance are those of a sweep at rest.
     advance, keep : callable, optional
         As of `simulate_sweep`.
 
     Returns
     -------
-    Readings
+    Readings or SpatialReadings
         In the units of the case's beam, source ``"mujoco <beam> in motion"``. The clamp's readings
         are means over the way round each station, see `Motion`; ``force_x_raw``, ``force_y_raw``
         and ``moment_z_raw`` are those of the moment. More columns: ``time`` [T1],
@@ -166,21 +183,31 @@ def simulate_motion(
         ``contact_losses``, how often the contact was lost since the station before, and
         ``penetration`` [length]. A station is ``"chattering"`` if the contact was lost more than
         once or for 5 % of its way, and ``"lost"`` if nothing touches there but does later.
-        ``provenance["events"]["snap_off"]`` is where the last contact was lost.
+        ``provenance["events"]["snap_off"]`` is where the last contact was lost; in space the events
+        are a list, and ``friction_*`` is MuJoCo's friction over its normal force.
 
     Raises
     ------
     InputError
         If the case's beam has no radius; if friction would overshoot in the time step; if the
-        installed MuJoCo lacks the beam, or it is no
-        chain or rod in the plane.
+        installed MuJoCo lacks the beam, or it is no chain or rod in the plane; in space if friction
+        has a pyramid for its cone, the way a corner, or the body is another.
     DivergedError
         If the motion does not stay finite; it names the time and what to change.
     """
     from mujoco_models.dynamics.sweep import run_motion
 
-    chosen, moved = settings or Settings(), motion or Motion()
+    moved = motion or Motion()
+    if not isinstance(case, Case):
+        from analytic.space.problem.case import SpatialCase
+        from mujoco_models.settings import SpatialSettings
+        from mujoco_models.space.motion import run_space_motion
 
+        require("case", case, SpatialCase, "as SpatialCase(body=..., path=...), or a Case")
+        in_space = settings or SpatialSettings()
+        in_space = require("settings", in_space, SpatialSettings, "as SpatialSettings(segments=40)")
+        return run_space_motion(case, moved, in_space, advance, keep)
+    chosen = require("settings", settings or Settings(), Settings, "as Settings(segments=40)")
     found = run_motion(leftward(case), moved, chosen, advance, keep_facing(case, keep))
     return facing(case, found)
 

@@ -36,6 +36,8 @@ def simulate(
     if isinstance(case, SpatialCase):
         _require_mujoco(engine, "in space")
         spatial = require("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
+        if motion is not None:
+            return simulate_motion(case, motion, spatial, advance, keep)
         return simulate_space(case, spatial, advance, keep)
     settings = require("settings", settings, Settings, "as Settings(segments=40)")
     if model is not None:

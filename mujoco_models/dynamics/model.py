@@ -5,8 +5,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
-from analytic.problem.errors import InputError
+from analytic.problem.arrays import Floats
 from analytic.problem.poses import Pose, Poses
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import about_z
@@ -99,7 +98,7 @@ class MovingModel(SteppedModel):
 
     def step(self, speed: float) -> None:
         """By the force on a heavy carriage that accelerates it so."""
-        self._drive(-speed)
+        self._carry(-speed)
         if self._leaves_out:
             self._leave_out()
         self._advance()

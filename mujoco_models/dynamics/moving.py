@@ -9,7 +9,6 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
-from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.model.warned import has_diverged
 from mujoco_models.motion import Motion
@@ -51,7 +50,7 @@ class SteppedModel(ABC):
         """Whether a contact is loaded."""
 
     @abstractmethod
-    def clamp(self) -> Clamp:
+    def clamp(self) -> tuple[float, ...]:
         """The clamp's action on the vibrissa."""
 
     @abstractmethod
@@ -66,8 +65,8 @@ class SteppedModel(ABC):
         sensors do.
         """
 
-    def _drive(self, speed: float) -> None:
-        """A heavy carriage, the model's first degree of freedom, is to have a speed after a step."""
+    def _carry(self, speed: float) -> None:
+        """A heavy carriage, the first degree of freedom, is to have a speed after a step."""
         self.time = self.now
         change = speed - float(self.data.qvel[0])
         self.data.qfrc_applied[0] = CARRIAGE * MASS * change / self.model.opt.timestep

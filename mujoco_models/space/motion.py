@@ -87,7 +87,7 @@ class MovingSpace(SteppedModel):
 
     def step(self, speed: float) -> None:
         """By the force on a heavy carriage that accelerates it so."""
-        self._drive(speed)
+        self._carry(speed)
         self._advance()
 
     def clamp(self) -> tuple[float, ...]:
