@@ -14,7 +14,7 @@ from compare.read.job import AnyJob, Job, SpaceJob
 from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.show.report import budget_files
-from compare.simulate.budgets import measure_budget
+from compare.simulate.budgets import measure_budget, require_rest
 from compare.simulate.fastest import Fastest, find_fastest
 from compare.simulate.target import Followed, follow_advice
 from mujoco_models import simulate_model, simulate_motion
@@ -45,6 +45,7 @@ class Measured:
 def measured(job: AnyJob, target: float | None) -> Measured:
     """Measure and print the budget of a job, and what to do for a wanted error."""
     if isinstance(job, SpaceJob):  # printed with the verdict
+        require_rest(job.motion)
         with terminal.progress(_SWEEPS) as advance:
             parts, swept = measure_budget(job.case, job.settings, advance)
         return Measured(swept["base"], parts=parts)

@@ -104,13 +104,15 @@ class SpaceJob(_Stated):
         The limits of agreement.
     engines : tuple of str
         Which engines sweep the case; none: the closed form alone.
+    motion : Motion or None
+        How the foot moves; None if MuJoCo's beam is at rest at every station.
     """
 
     case: "SpatialCase"
     settings: SpatialSettings = field(default_factory=SpatialSettings)
     tolerances: SpatialTolerances = field(default_factory=SpatialTolerances)
     engines: tuple[str, ...] = ("mujoco",)
-    motion: ClassVar[None] = None
+    motion: "Motion | None" = None
     model: ClassVar[None] = None
     uncertainties: ClassVar[None] = None
     _path = "path"

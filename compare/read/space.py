@@ -12,6 +12,7 @@ from compare.judge.tolerances import SpatialTolerances
 from compare.read.complaints import name_of
 from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
+from compare.read.motion import MotionTable
 from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
 from compare.read.tables import BeamTable, ContactTable
@@ -120,6 +121,8 @@ class SpaceFile(Table):
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable  # the physics
     contact: ContactTable = ContactTable()  # the physics
+    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
+    motion: MotionTable | None = None
     # The numerics of MuJoCo's sweep.
     mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()
     # Limits of agreement, each with its reason.
@@ -153,4 +156,5 @@ def job_in_space(file: TomlFile) -> SpaceJob:
     found = validated(SpaceFile, file.tables, file.place)
     limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     case = found.case(file.path.parent, found.name or name_of(file.path))
-    return SpaceJob(case, found.mujoco, limits)
+    motion = None if found.motion is None else found.motion.build(case.beam)
+    return SpaceJob(case, found.mujoco, limits, motion=motion)

@@ -87,6 +87,7 @@ def measure_budget(
         If a sweep that the budget cannot do without is not a number any more.
     """
     if isinstance(case, SpatialCase):
+        require_rest(motion)
         chosen = SpatialSettings() if settings is None else settings
         return _in_space(case, require("settings", chosen, SpatialSettings, _REMEDY), advance)
     chosen = Settings() if settings is None else settings
@@ -97,6 +98,12 @@ def measure_budget(
 
 
 _REMEDY = "take Settings in the plane, SpatialSettings in space"
+
+
+def require_rest(motion: Motion | None) -> None:
+    """Refuse a motion in space, whose disagreement nothing splits."""
+    if motion is not None:
+        raise InputError("motion", "given", "none for a budget in space", "take it at rest")
 
 
 def _in_space(
