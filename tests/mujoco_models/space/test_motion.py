@@ -13,9 +13,7 @@ from mujoco_models.motion import Motion
 from mujoco_models.settings import SpatialSettings
 
 WAY = FootPath([[1.0, 0.3], [-0.6, 0.3]], stations=40)
-BALL = SpatialCase(
-    Beam(radius=0.002), body=sphere(1.0, centre=(0, 1.4, 0)), path=WAY, friction=0.3
-)
+BALL = SpatialCase(Beam(radius=0.002), body=sphere(1.0, centre=(0, 1.4, 0)), path=WAY, friction=0.3)
 SLOW = Motion(speed=0.02, timestep=0.002, contact_stiffness=1e3, cone="elliptic")
 N20 = SpatialSettings(segments=20)
 
