@@ -52,10 +52,10 @@ def _methods(records: list[MethodsRecord]) -> Iterator[Section]:
             "readings of MuJoCo. All numbers are beside each picture, as a table (.csv)."
         )
     ]
-    for one in records:
+    for i, one in enumerate(records):
         shows = f"What each method survives on readings of the case {one.case}"
         blocks += [
-            Text(method_sentences(one), strong=f"{one.case}."),
+            *([] if i else [Text(method_sentences(one), strong=f"{one.case}.")]),
             Image(one.folder / "methods.png", shows, one.case),
         ]
     yield Section("methods", "Methods to find the contact", blocks)
