@@ -87,7 +87,8 @@ def page(table: pd.DataFrame) -> Document:
         f"{_SEGMENTS[-1]} segments, {_STATIONS} stations of each named case, 30 past each circle, "
         "on the primitive; league.csv has more, and what was set. worst rms: of the three "
         "readings. trusted: share of stations that are ok, or that nobody doubts. times MuJoCo: "
-        "processor time over MuJoCo's in the same run. default: the same error with the engine's defaults."
+        "processor time over MuJoCo's in the same run. default: the same error with the engine's "
+        "defaults."
     )
     blocks: list[Block] = [
         said,
