@@ -115,6 +115,19 @@ class Layout:
         return self.vibrissa.clamp_compliance > 0
 
     @cached_property
+    def hanging(self) -> Floats:
+        """First moments about its begin of each link and of what hangs on its end [L^2]."""
+        beyond = 1 - self.joints - self.lengths
+        return np.asarray(self.chords * (beyond + self.lengths / 2))
+
+    def weigh(self, headings: Floats) -> tuple[Floats, Floats]:
+        """Moment of the weight on each link, and its stiffness, by the turns of the chords."""
+        w_x, w_y = self.vibrissa.weight
+        sin, cos = np.sin(headings), np.cos(headings)
+        along, across = w_y * cos - w_x * sin, -w_x * cos - w_y * sin
+        return self.hanging * across, self.hanging * along
+
+    @cached_property
     def spacing(self) -> float:
         """The largest distance of neighbouring beads [L]."""
         return float(np.diff(self.beads).max(initial=0.0))

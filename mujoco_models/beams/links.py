@@ -7,7 +7,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT, Furnish, bare
 
-_MASS = 1e-5  # of a link, any small number: at rest masses do not matter
+_MASS = 1e-5  # of a mean link, any small number: at rest its weight alone matters
 _THINNEST = 1e-4  # L; the inertia of a thinner capsule is too small for MuJoCo
 _PART = 20  # links, that are put together first
 _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
@@ -27,8 +27,8 @@ class HingedLinks:
         """
         spec = mujoco.MjSpec()
         end = spec.worldbody.add_body(name=FOOT)
-        _add_capsule(end, self.layout.base[0], radius)
-        count = len(self.layout.joints)
+        count, by_length = len(self.layout.joints), mass_by_length(self.layout)
+        _add_capsule(end, self.layout.base[0], radius, by_length * self.layout.joints[0])
         for begin in range(0, count, _PART):
             part = mujoco.MjSpec()
             links = range(begin, min(begin + _PART, count))
@@ -49,7 +49,8 @@ class HingedLinks:
                 axis=[0, 0, 1],
                 armature=_ARMATURE / layout.compliances[i],
             )
-            _add_capsule(body, np.array([0, layout.chords[i]]), radius * thickness[i])
+            mass = mass_by_length(layout) * layout.lengths[i]
+            _add_capsule(body, np.array([0, layout.chords[i]]), radius * thickness[i], mass)
             furnish(body, i)
 
     def body(self, spec: mujoco.MjSpec, link: int) -> mujoco.MjsBody:
@@ -109,13 +110,18 @@ def _own_name(link: int) -> str:
     return f"link{link}"
 
 
+def mass_by_length(layout: Layout) -> float:
+    """Of links at rest."""
+    return _MASS * len(layout.joints)
+
+
 def about_z(turn: float) -> Floats:
     """A turn about z."""
     return np.array([np.cos(turn / 2), 0, 0, np.sin(turn / 2)])
 
 
-def _add_capsule(body: mujoco.MjsBody, end: Floats, radius: float) -> None:
-    """What the eye sees of a link, and its mass, because MuJoCo requires one."""
+def _add_capsule(body: mujoco.MjsBody, end: Floats, radius: float, mass: float) -> None:
+    """What the eye sees of a link, and its mass."""
     if np.hypot(*end) < _THINNEST:  # of a foot on whose clamp the vibrissa turns
         end = np.array([0, _THINNEST])
     body.add_geom(
@@ -124,5 +130,5 @@ def _add_capsule(body: mujoco.MjsBody, end: Floats, radius: float) -> None:
         size=[max(radius, _THINNEST), 0, 0],
         contype=0,
         conaffinity=0,
-        mass=_MASS,
+        mass=mass,
     )

@@ -22,13 +22,16 @@ class Vibrissa:
     # follows the fourth power of the radius.
     rigidity: Along | None = None
     clamp_compliance: float = 0.0  # turn of the clamp by moment, 0 if it is rigid [L/EI]
+    weight: tuple[float, float] = (0.0, 0.0)  # along x and y, by length [EI/L^3]
 
     @classmethod
     def of(cls, beam: Beam, held: Support) -> "Vibrissa":
         """That of a case whose clamp goes to the left, as the clamp has it."""
         given = beam.flexural_rigidity
         rigidity = given if isinstance(given, Along) else None
-        return cls(beam.unloaded, rigidity, beam.moment_unit / held.clamp_stiffness)
+        w_x, w_y = (w * beam.length / beam.force_unit for w in held.weight)
+        compliance = beam.moment_unit / held.clamp_stiffness
+        return cls(beam.unloaded, rigidity, compliance, (w_x, w_y))
 
     @property
     def is_straight(self) -> bool:

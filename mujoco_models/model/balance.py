@@ -21,6 +21,8 @@ class Mechanics(Protocol):
 
     layout: Layout
     """Where joints and beads are."""
+    pose: Pose
+    """Of the clamp, in the configuration that was evaluated last."""
     obstacle: Obstacle
     """What the beam is swept past."""
     contact_stiffness: float
@@ -47,8 +49,6 @@ class Balance(Mechanics, Protocol):
 
     lookout: Lookout
     """What takes part in collisions."""
-    pose: Pose
-    """Of the clamp, in the configuration that was evaluated last."""
     evaluations: int
     """How often `imbalance` was called."""
 

@@ -17,6 +17,16 @@ class Clamp(NamedTuple):
     force_y: float
     moment_z: float
 
+    @classmethod
+    def of(cls, wrench: Floats) -> "Clamp":
+        """What of force and moment, shape (2, 3), is in the plane."""
+        (fx, fy, _), (_, _, mz) = wrench.tolist()
+        return cls(fx, fy, mz)
+
+
+WEIGHTLESS = Clamp(0.0, 0.0, 0.0)
+"""What holds no weight."""
+
 
 def by_sensors(data: mujoco.MjData, angle: float) -> Clamp:
     """MuJoCo's force and torque sensors at a clamp that leans to the left by an angle.
@@ -40,9 +50,15 @@ def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Floats:
     return np.array([-outward @ force, -moment @ force])
 
 
-def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: float) -> float:
-    """By how much three accounts of the clamp differ in the plane, the worst of all."""
+def discrepancy(
+    sensed: Clamp, required: Clamp, first_joint: Floats, moment: float, base: Clamp = WEIGHTLESS
+) -> float:
+    """By how much three accounts of the clamp differ in the plane, the worst of all.
+
+    `base` is what holds the weight of the rigid part at the clamp.
+    """
     by_contact = max(abs(a - b) for a, b in zip(sensed, required, strict=True))
     x, y = first_joint.tolist()
-    at_joint = sensed.moment_z + y * sensed.force_x - x * sensed.force_y
+    force_x, force_y, moment_z = (a - b for a, b in zip(sensed, base, strict=True))
+    at_joint = moment_z + y * force_x - x * force_y
     return float(max(by_contact, abs(at_joint - moment)))

@@ -22,6 +22,7 @@ from mujoco_models.model.spec import assemble, compiled
 from mujoco_models.model.stiffness import stiffen
 from mujoco_models.model.surface import Surface
 from mujoco_models.model.warned import has_diverged
+from mujoco_models.model.weight import hang, holding
 from mujoco_models.obstacles.protocol import Obstacle
 
 STEP = 1e-3  # of MuJoCo's own motion
@@ -67,7 +68,7 @@ class BeamModel:
     def imbalance(self, pose: Pose, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.
 
-        Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
+        Elasticity, contacts and weight only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
         self.move_clamp(pose)
@@ -136,8 +137,9 @@ class BeamModel:
         return self.beam.moments(self.moments())
 
     def moments(self) -> Floats:
-        """Elasticity and contacts in all of MuJoCo's coordinates."""
-        return np.asarray(self.data.qfrc_passive + self.data.qfrc_constraint)
+        """Elasticity, contacts and weight in all of MuJoCo's coordinates."""
+        data = self.data
+        return np.asarray(data.qfrc_passive + data.qfrc_constraint - data.qfrc_bias)
 
     def turn(self, start: Floats, turns: Floats) -> None:
         """Evaluate the configuration that small turns make of another one."""
@@ -233,8 +235,23 @@ class BeamModel:
 
     def discrepancy(self) -> float:
         """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""
-        foot = self.data.xpos[self._foot]
-        (fx, fy, _), (_, _, mz) = clamp.by_contacts(self.data, foot, self._surface.moves).tolist()
+        model, data = self.model, self.data
+        foot = data.xpos[self._foot]
+        numbers = np.arange(model.nbody)
+        base = holding(model, data, foot, numbers == self._foot)
+        required = clamp.by_contacts(data, foot, self._surface.moves)
+        required += holding(model, data, foot, model.body_rootid == self._foot)
         moment = float(self.elastic_moments()[0])
         joint = turned(self.layout.base[0], self.pose.angle)
-        return clamp.discrepancy(self.clamp(), clamp.Clamp(fx, fy, mz), joint, moment)
+        accounts = (clamp.Clamp.of(wrench) for wrench in (required, base))
+        return clamp.discrepancy(self.clamp(), next(accounts), joint, moment, next(accounts))
+
+    def hang(self) -> Floats:
+        """Joint angles of the vibrissa under its weight, in the pose that the clamp has."""
+
+        def imbalance(angles: Floats) -> Floats:
+            self.beam.place(self.data, angles)
+            self.evaluate()
+            return self.beam.moments(self.data.qfrc_passive - self.data.qfrc_bias)
+
+        return hang(self.model, self.beam, float(self.pose.angle), imbalance)

@@ -1,8 +1,11 @@
 """The model before it is compiled: the beam with its beads, the clamp's sensors, the obstacle."""
 
 import mujoco
+import numpy as np
 
 from analytic.problem.errors import InputError
+from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.links import mass_by_length
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
@@ -36,6 +39,8 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
 
     spec = beam.spec(radius, furnish)
     add_options(spec)
+    if any(layout.vibrissa.weight):
+        set_weight(spec, layout, mass_by_length(layout))
     obstacle.add_to(spec)
     if len(obstacle.corners):
         obstacle.corners.add_to(spec)
@@ -71,6 +76,11 @@ def add_options(spec: mujoco.MjSpec) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
     # The midphase's tree tests every bead against every window: seven times the cost of a step.
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE
+
+
+def set_weight(spec: mujoco.MjSpec, layout: Layout, mass_by_length: float) -> None:
+    """Let links of a mass by length weigh what the vibrissa does."""
+    spec.option.gravity = [*(np.array(layout.vibrissa.weight) / mass_by_length), 0]
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:

@@ -60,10 +60,17 @@ class Newton:
         pressed = loaded.nonzero()[0]
         held = comes.take(pressed, axis=0)
         moments = of_links(model.elastic_moments()) - part * distance.take(pressed) @ held
+        layout, heavy = model.layout, any(model.layout.vibrissa.weight)
+        if heavy:
+            headings = layout.headings + (model.pose.angle + state.angles.cumsum())
+            weight, hangs = layout.weigh(headings)
+            moments += weight
         if sliding:
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
         springs = (1 + inertia) * model.stiffness(state.angles)
         stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held, part)
+        if heavy:
+            stiffness.links[:] += hangs
         rows = np.concatenate([moments[None], comes])
         turns, self._doubled = stiffness.solve(rows, self._doubled)
         freely, by_force = turns[0], turns[1:]

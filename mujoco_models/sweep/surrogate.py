@@ -23,6 +23,7 @@ class Surrogate:
         self, model: Balance, loaded: Collection[int], reach: int = 0, *, follow: bool = False
     ) -> None:
         self._model, self.layout, self.obstacle = model, model.layout, model.obstacle
+        self.pose = model.pose
         self.contact_stiffness = model.contact_stiffness
         self.contact_curvature = model.contact_curvature
         self.stiffness = model.stiffness
@@ -46,7 +47,7 @@ class Surrogate:
 
     def look(self, pose: Pose, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that."""
-        looked = pose, self._model.lookout.window
+        self.pose, looked = pose, (pose, self._model.lookout.window)
         if angles is self._angles and looked == self._looked:
             return self._seen
         layout, self._angles, self._looked = self.layout, angles, looked
@@ -122,6 +123,7 @@ class Surrogate:
         angles, depth = self._angles, np.minimum(contacts.distance, 0)
         toward = sum(w * (1 - x) * self.stiffness(x * angles) for x, w in _RULE)
         bent = float(angles @ (angles * toward))
+        bent -= float(self.layout.hanging @ (self.layout.vibrissa.weight @ self._along))
         return bent + self.contact_stiffness / 2 * float(depth @ depth)
 
     def is_inside(self, contacts: Contacts) -> bool:

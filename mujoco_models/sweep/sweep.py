@@ -14,6 +14,7 @@ from mujoco_models.model.stations import engine, visit
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.spatial_walk import SpatialWalk
+from mujoco_models.sweep.state import State
 from mujoco_models.sweep.walk import Model, Walk
 
 
@@ -60,8 +61,13 @@ def follow(
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:
-    """The beam, straight, with its clamp at the first station of a sweep to the left."""
+    """The beam, as it hangs, with its clamp at the first station of a sweep to the left."""
     beam, obstacle = parts_at_rest(case, settings)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
-    kind = Walk if settings.planar else SpatialWalk
-    return kind(model, case, settings.tolerance, numerics)
+    if not settings.planar:
+        return SpatialWalk(model, case, settings.tolerance, numerics)
+    start = None
+    if any(case.weight):
+        model.move_clamp(case.poses.at(case.way[0]))
+        start = State(model.hang(), {})
+    return Walk(model, case, settings.tolerance, numerics, start)

@@ -45,21 +45,27 @@ class Walk(Generic[Model]):
     """The beam on its way: the last state on the branch, and the one before it."""
 
     def __init__(
-        self, model: Model, case: Case, tolerance: float, numerics: Numerics | None = None
+        self,
+        model: Model,
+        case: Case,
+        tolerance: float,
+        numerics: Numerics | None = None,
+        start: State | None = None,
     ) -> None:
         self.model = model
         self._tolerance = tolerance
         self._numerics = numerics or Numerics()
         self._poses = case.poses
         self._p = float(case.way[0])  # parameter of the clamp's way; it falls
-        self._state = State.straight(len(model.layout.joints))
+        self._state = start or State.straight(len(model.layout.joints))
         self._before: tuple[float, State] | None = None  # on the branch, before the last state
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
         self._dead_end: tuple[float, str] | None = None  # where no step leads on, and why
         self._smooth = True  # no step was taken in vain at this station and the last one
-        self._curved = not model.layout.vibrissa.is_straight
+        vibrissa = model.layout.vibrissa
+        self._curved = any(vibrissa.weight) or not vibrissa.is_straight
         turn = model.obstacle.largest_curvature * model.layout.spacing
         self._sharp = turn > 2 * OF_CURVATURE
         self.snap_off: float | None = None
