@@ -8,7 +8,7 @@ g = cos(chi) and v = -kappa/2 with chi = pi/4 - (phi - phi_F)/2, the curvature t
 F p^2 + v^2 = B gives p but for its sign, and the addition theorems of sn, cn and dn, read backwards
 (Byrd and Friedman, *Handbook of elliptic integrals*, 1971, 123.01), the arc length between two
 places of which all three are known. A vibrissa that varies is marched along by collocation, and the
-place is sought where m(s) = m(0) + F x(s), x being the way along the force, passes the couple.
+place is sought where the moment passes the couple, and what a weight beyond leaves there.
 """
 
 from collections.abc import Iterator
@@ -30,6 +30,7 @@ from analytic.solver.general.states import Vibrissa
 # contact is the tip.
 _FLAT = 0.01
 _ROUNDS = 12  # of Newton's method, from a place between two nodes of a panel
+_STEP = 1e-6  # L; of a difference, at which Newton's method takes no more of them
 _SAME = 1e-9  # L; of a step of Newton's method, whose next one would be of its square
 _NEAR_TIP = 0.2  # L; the place may be that far beyond the tip, as far as the moment there says
 _LONGEST = 2.0  # L; so far the straight continuation of the tip is followed
@@ -72,8 +73,14 @@ class ClampEnd(NamedTuple):
         lean, rub = self.vibrissa.lean, np.arctan(self.vibrissa.friction)
         return np.where(theta + rub > np.pi / 2, np.pi - lean, lean) - rub
 
+    def left(self, s: Floats, theta: Floats, m: Floats) -> Floats:
+        """What of the moment neither friction nor the weight beyond explains."""
+        beyond = self.vibrissa.moment_beyond(theta + self.direction, s)
+        left = m + self.couple(s)
+        return left if beyond is None else left - beyond
+
     def couple(self, s: Floats) -> Floats:
-        """Moment that is left if the contact is there."""
+        """Couple of the friction if the contact is there."""
         mu = self.vibrissa.friction
         return np.asarray(mu / np.sqrt(1 + mu**2) * self.vibrissa.radius_at(s) * self.force)
 
@@ -88,11 +95,15 @@ class ClampEnd(NamedTuple):
             return SpanEnd(
                 theta, -start.kappa - natural, start.along, start.across, start.amplitude
             )
-        given = np.broadcast_arrays(self.theta, -self.moment, self.force, np.minimum(s, 1.0))
+        begin = self.theta, -self.moment, self.force
+        given = np.broadcast_arrays(*begin, np.minimum(s, 1.0), self.direction)
         known = np.isfinite(sum(given))
         found = np.full((len(SpanEnd._fields), *known.shape), np.nan)
         if known.any():
-            found[:, known] = march(rod, *(values[known] for values in given), from_clamp=True)
+            theta, m, force, length, direction = (values[known] for values in given)
+            found[:, known] = march(
+                rod, theta, m, force, length, direction=direction, from_clamp=True
+            )
         end, beyond = SpanEnd(*found), np.maximum(s - 1, 0.0)
         cos, sin = np.cos(end.theta), np.sin(end.theta)
         return end._replace(
@@ -215,13 +226,21 @@ def _length_between(
 
 
 def _marched(end: ClampEnd, rod: RodProperties) -> Iterator[_Candidate]:
-    """Between which nodes the moment passes the couple, and next to the tip."""
+    """Between which nodes the moment passes the couple, and next to the tip.
+
+    What hangs beyond a node is taken to be straight: it only has to show where to look.
+    """
     trail: list[Trail] = []
-    whole, first = np.ones_like(end.force), np.zeros((1, end.force.size))
-    tip = march(rod, end.theta, -end.moment, end.force, whole, from_clamp=True, trail=trail)
-    s = np.concatenate([first, *(piece.s for piece in trail)])
-    along = np.concatenate([first, *(piece.along for piece in trail)])
-    excess = -end.moment + end.force * along + end.couple(s)
+    whole, here = np.ones_like(end.force), (end.theta, -end.moment, end.force)
+    tip = march(rod, *here, whole, direction=end.direction, from_clamp=True, trail=trail)
+    clamp = 0 * whole, end.theta, -end.moment
+    s, theta, m = (
+        np.concatenate([begin[None], *pieces])
+        for begin, *pieces in zip(clamp, *((p.s, p.theta, p.m) for p in trail), strict=True)
+    )
+    slope, (w_x, w_y) = theta + end.direction, end.vibrissa.weight
+    hangs = (1 - s) ** 2 / 2 * (w_y * np.cos(slope) - w_x * np.sin(slope))
+    excess = m + end.couple(s) - hangs
     passed = np.signbit(excess[1:]) != np.signbit(excess[:-1])
     for number in range(int(passed.sum(axis=0).max(initial=0))):
         which = np.flatnonzero(passed.sum(axis=0) > number)
@@ -243,12 +262,11 @@ def _refined(end: ClampEnd, start: Floats) -> tuple[Floats, Floats]:
         if on.size == 0:
             break
         some, here = take(end, on), s[on]
-        place = some.march(here)
-        rate = some.force * np.cos(place.theta)
-        couple = some.couple(here)
-        couple_rate = some.couple(np.zeros_like(here)) - some.couple(np.ones_like(here))
+        place, farther = some.march(here), some.march(here + _STEP)
+        left = some.left(here, place.theta, place.m)
+        rate = (some.left(here + _STEP, farther.theta, farther.m) - left) / _STEP
         with np.errstate(divide="ignore", invalid="ignore"):
-            new = np.clip(here - (place.m + couple) / (rate - couple_rate), 0.0, _LONGEST)
+            new = np.clip(here - left / rate, 0.0, _LONGEST)
         s[on], slope[on], moved[on] = new, place.theta, np.abs(new - here)
     settled = moved <= _SAME
     return np.where(settled, s, np.nan), np.where(settled, slope, np.nan)

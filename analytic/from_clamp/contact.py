@@ -8,7 +8,7 @@ from analytic.from_clamp.clamp_end import ClampEnd
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED, units
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain, require_weightless
+from analytic.problem.support import is_plain
 from analytic.solver.elastica import frame, span_of_moment
 from analytic.solver.general.states import Vibrissa
 
@@ -32,10 +32,14 @@ class LocatedContact(NamedTuple):
 
 
 def dimensionless(readings: Readings) -> Floats:
-    """The sensed columns over L, EI/L^2 and EI/L."""
-    return np.array(
-        [readings.values(n) / u for n, u in zip(SENSED, units(readings.beam, SENSED), strict=True)]
+    """The sensed columns over L, EI/L^2 and EI/L, the forces without what holds the weight."""
+    beam = readings.beam
+    found = np.array(
+        [readings.values(n) / u for n, u in zip(SENSED, units(beam, SENSED), strict=True)]
     )
+    for row, weight in zip(found[1:3], readings.support.weight, strict=True):
+        row += weight * beam.length / beam.force_unit
+    return found
 
 
 def sides(sensed: Floats) -> Floats:
@@ -59,7 +63,6 @@ class SweptVibrissa(NamedTuple):
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
         held = readings.support.mirrored() if rightward else readings.support
-        require_weightless("the way from the clamp to the contact", held)
         return cls(Vibrissa.of(beam, held), is_plain(beam, held), -1.0 if rightward else 1.0)
 
     def clamp_end(self, sensed: Floats) -> ClampEnd:

@@ -179,10 +179,10 @@ def scatter_of_contacts(passes: Sequence[Readings], found: Sequence[pd.DataFrame
 
 def clearly_loaded(readings: Readings) -> Booleans:
     """Stations that show a wrong vibrissa whatever the noise."""
-    force = np.hypot(readings.values("force_x"), readings.values("force_y"))
+    force = np.hypot(*dimensionless(readings)[1:3])
     force = np.where(readings.trusted, force, 0.0)
     large = float(np.quantile(force, _LARGE, method="lower"))
-    felt = force > UNLOADED * readings.beam.force_unit
+    felt = force > UNLOADED
     drowned = felt & (judge_phases(readings).phase == "free")
     return np.asarray(felt & (force > _CLEAR * large) & ~drowned, dtype=bool)
 

@@ -41,6 +41,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     natural = held.way * held.vibrissa.natural_curvature
     long = beam.length
     foot_x = readings.values("foot_x") / long
+    w_x, w_y = (w * long / beam.force_unit for w in readings.support.weight)
     force_x = readings.values("force_x") / beam.force_unit
     force_y = readings.values("force_y") / beam.force_unit
     moment = readings.values("moment_z") / beam.moment_unit
@@ -50,11 +51,12 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         loaded = np.where(two, readings.values("contact_arc_length") / long, loaded)
 
     def rate(state: Floats) -> Floats:
-        x, y, phi, s = state
-        kappa = natural - moment + force_y * x - force_x * y
+        x, y, phi, s, carried = state
+        kappa = natural - moment + force_y * x - force_x * y + carried
         if beam.varies:
             kappa = at_rest(s) + (kappa - natural) * beam.base_rigidity / beam.rigidity_at(s * long)
-        return np.stack([np.cos(phi), np.sin(phi), kappa, np.ones_like(s)])
+        cos, sin = np.cos(phi), np.sin(phi)
+        return np.stack([cos, sin, kappa, np.ones_like(s), s * (w_y * cos - w_x * sin)])
 
     def at_rest(s: Floats) -> Floats:
         return beam.curvature_at(np.clip(s, 0, 1) * long) * long
@@ -69,9 +71,12 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
             np.zeros_like(foot_x),
             np.pi / 2 + readings.support.clamp_angle - held.vibrissa.compliance * moment,
             np.zeros_like(foot_x),
+            np.zeros_like(foot_x),
         ]
     )
     states = march(rate, clamp, loaded, _STEPS)
+    if w_x or w_y:  # what is beyond the contact hangs
+        return _drawn(_hanging(held, states, loaded), foot_x, long)
     if two.any():
         x, y = states[-1][:2]
         outer_x, outer_y = _outer_share(readings) / beam.force_unit
@@ -80,6 +85,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         outer = np.where(two, readings.values("second_contact_arc_length") / long, loaded)
         states = np.concatenate([states, march(rate, states[-1], outer - loaded, _STEPS)[1:]])
         loaded = outer
+    states = states[:, :4]
     if isinstance(beam.natural_curvature, Along):
         rest_of_it = march(rate_at_rest, states[-1], 1 - loaded, _FREE)[1:]
         return _drawn(np.concatenate([states, rest_of_it]), foot_x, long)
@@ -107,6 +113,15 @@ def _outer_share(readings: Readings) -> Floats:
     return np.asarray(np.nan_to_num(force * np.array([-sin - mu * cos, cos - mu * sin])))
 
 
+def _hanging(held: SweptVibrissa, states: Floats, loaded: Floats) -> Floats:
+    """Places up to the contact, and of the end that hangs beyond it."""
+    x, y, phi = states[-1, :3]
+    hung = held.vibrissa.hung(phi if held.way > 0 else np.pi - phi, loaded)
+    assert hung is not None
+    beyond = np.stack([x + held.way * hung.x.T, y + hung.y.T], axis=1)
+    return np.concatenate([states[:, :2], beyond])
+
+
 def _drawn(states: Floats, foot_x: Floats, long: float) -> tuple[Floats, Floats]:
     path = np.moveaxis(states, 0, -1)
     return (path[0] + foot_x[:, None]) * long, path[1] * long
@@ -120,7 +135,7 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     readings : Readings
         Only the four sensed columns are used.
     x, y : array, shape (stations, points)
-        Coordinates [length]; those beyond the contact carry no moment.
+        Coordinates [length]; those beyond the contact carry their own weight at most.
 
     Returns
     -------
@@ -133,8 +148,12 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     steps = np.hypot(np.diff(x, prepend=x[:, :1]), np.diff(y, prepend=y[:, :1]))
     s = np.minimum(np.cumsum(steps, axis=1), beam.length)
     y = y - readings.foot_y[:, None]
-    kappa = (force_y * (x - foot_x) - force_x * y - moment) / beam.rigidity_at(s)
-    kappa[:, _STEPS + 1 :] = 0.0
+    w_x, w_y = readings.support.weight
+    turns = w_y * np.diff(x, prepend=x[:, :1]) - w_x * np.diff(y, prepend=y[:, :1])
+    bends = force_y * (x - foot_x) - force_x * y - moment + np.cumsum(s * turns, axis=1)
+    hanging = np.cumsum(((beam.length - s) * turns)[:, ::-1], axis=1)[:, ::-1]
+    bends[:, _STEPS + 1 :] = hanging[:, _STEPS + 1 :]
+    kappa = bends / beam.rigidity_at(s)
     if touches_twice(readings.table).any():
         along = slice(_STEPS + 1, 2 * _STEPS + 1)
         outer_x, outer_y = _outer_share(readings)[..., None]

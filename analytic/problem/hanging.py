@@ -53,7 +53,9 @@ def hang(
     What holds them may turn by `compliance` times the moment. Panels end where `phase` is reached.
     """
     places = _panels(rod, phase)
-    first = max(int(np.searchsorted(places, np.nanmin(begin), side="right")) - 1, 0)
+    first = max(
+        int(np.searchsorted(places, np.fmin.reduce(begin, initial=1.0), side="right")) - 1, 0
+    )
     ends = np.maximum(places[first:], begin[:, None])
     widths = np.diff(ends)
     s = (ends[:, :-1, None] + widths[..., None] * POINTS).reshape(len(begin), -1)

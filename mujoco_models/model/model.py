@@ -68,7 +68,7 @@ class BeamModel:
     def imbalance(self, pose: Pose, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.
 
-        Elasticity, contacts and weight only: with zero velocity nothing else acts. Contacts and clamp
+        Elasticity, contacts and weight: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
         self.move_clamp(pose)

@@ -39,9 +39,7 @@ def hang(
     return angles
 
 
-def holding(
-    model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, bodies: Booleans
-) -> Floats:
+def holding(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, bodies: Booleans) -> Floats:
     """Force and moment at the foot that hold the weight of bodies, shape (2, 3)."""
     weight = np.outer(model.opt.gravity, model.body_mass[bodies])
     moment = cross((data.xipos[bodies] - foot).T, weight)

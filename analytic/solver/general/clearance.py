@@ -174,7 +174,7 @@ def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
             direction=place.alpha + lean,
             trail=trail,
         )
-        s, along, across = (np.concatenate(parts) for parts in zip(*trail, strict=True))
+        s, along, across, *_ = (np.concatenate(parts) for parts in zip(*trail, strict=True))
         reached = s.max(axis=1)
         order = np.argsort(reached)
         some = np.unique(order[np.searchsorted(reached[order], _MARKS * reached.max())])

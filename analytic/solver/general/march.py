@@ -51,6 +51,8 @@ class Trail(NamedTuple):
     s: Floats
     along: Floats
     across: Floats
+    theta: Floats  # slope angle from the force's [rad]
+    m: Floats  # moment
 
 
 def march(
@@ -173,10 +175,8 @@ def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -
             reached = turned + force * panel.turned(cos)
     change = np.abs(reached[:-1] - theta).max(axis=0)
     last = np.where(change > _LOST, np.nan, reached[-1])
-    if pull.heavy:
-        moment = here.m + panel.length * WEIGHTS.dot(pull.at(panel.s, theta))
-    else:
-        moment = here.m + panel.length * force * WEIGHTS.dot(cos)
+    bends = pull.at(panel.s, theta) if pull.heavy else force * cos
+    moment = here.m + panel.length * WEIGHTS.dot(bends)
     sin, size = np.sin(theta), np.abs(panel.length)
     if trail is not None:
         trail.append(
@@ -184,6 +184,8 @@ def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -
                 np.broadcast_to(panel.s, cos.shape),
                 here.along + size * TO_NODES.dot(cos),
                 here.across + size * TO_NODES.dot(sin),
+                theta,
+                here.m + panel.length * TO_NODES.dot(bends),
             )
         )
     first, final = _phases(panel, np.array([here.theta, last]), np.array([here.m, moment]), force)

@@ -23,6 +23,7 @@ from analytic import (
     solve_contact,
     solve_sweep,
 )
+from analytic.from_clamp.shape import deflected_shapes
 from analytic.problem.errors import InputError
 from analytic.problem.table import as_table
 from analytic.solver.general.sweep import solve
@@ -127,7 +128,7 @@ def test_who_cannot_do_with_a_weight_says_so():
     with pytest.raises(InputError, match=r"weight = .*where the clamp turns"):
         Case(sweep=path, weight=(0.0, -1.0))
     with pytest.raises(InputError, match="weight_y = -1"):
-        reconstruct(solve_sweep(Case(sweep=Sweep(5), weight=(0.0, -1.0))))
+        reconstruct(solve_sweep(Case(sweep=Sweep(5), weight=(0.0, -1.0))), method="decision")
 
 
 VARIED = [
@@ -156,6 +157,21 @@ def test_integration_from_the_clamp_to_the_tip_confirms_it(case):
     assert certify(readings).max(axis=None) < 1e-11
     mirrored = solve_sweep(case.mirrored())
     np.testing.assert_allclose(mirrored.values("force_x"), -readings.values("force_x"), atol=1e-12)
+
+
+@pytest.mark.parametrize("case", VARIED, ids=lambda case: f"{case.weight}")
+def test_the_contact_from_the_clamp(case):
+    readings = solve_sweep(case)
+    found = reconstruct(readings)
+    assert list(found["phase"]) == list(readings.table["phase"])
+    for name in ("contact_x", "contact_y", "contact_arc_length"):
+        np.testing.assert_allclose(found[name], readings.table[name], atol=1e-12)
+    x, y = deflected_shapes(readings)
+    lengths = np.hypot(np.diff(x, axis=1), np.diff(y, axis=1)).sum(axis=1)
+    np.testing.assert_allclose(lengths, case.beam.length, rtol=1e-3)
+    last = readings.table["tip_angle"].to_numpy()
+    drawn = np.arctan2(np.diff(y, axis=1)[:, -1], np.diff(x, axis=1)[:, -1])
+    np.testing.assert_allclose(drawn, last, atol=0.05)
 
 
 def test_a_certificate_shows_a_wrong_weight():
