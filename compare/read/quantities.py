@@ -22,7 +22,7 @@ from compare.read.complaints import complaint, plain_name, require_known
 from compare.read.toml import KeyPlace
 from compare.read.units import in_si
 
-_WITH_UNITS = ("beam", "support", "profile", "sweep", "whisk", "body", "path")
+_WITH_UNITS = ("beam", "support", "weight", "profile", "sweep", "whisk", "body", "path")
 
 EXAMPLES = {
     "N": ("force", "0.2 mN"),
@@ -30,6 +30,7 @@ EXAMPLES = {
     "m": ("length", "50 mm"),
     "1/m": ("inverse length", "0.5 1/mm"),
     "N m^2": ("force times length squared", "2 N mm^2"),
+    "N/m": ("force by length", "2 mN/m"),
     "N m/rad": ("moment by angle", "0.3 mN m/rad"),
     "rad": ("angle", "2 deg"),
     "m/s": ("speed", "10 mm/s"),
@@ -101,6 +102,7 @@ PerLength = Annotated[float, PlainValidator(Dimension("1/m")), PLAIN]
 Pairs = tuple[tuple[float, float], ...]
 RigidityAlong = Annotated[float | Pairs, PlainValidator(VaryingDimension("N m^2")), PLAIN]
 CurvatureAlong = Annotated[float | Pairs, PlainValidator(VaryingDimension("1/m")), PLAIN]
+ForceByLength = Annotated[float, PlainValidator(Dimension("N/m")), PLAIN]
 RotationalStiffness = Annotated[float, PlainValidator(Dimension("N m/rad")), PLAIN]
 # A plain number of radians goes with either kind of file.
 Angle = Annotated[float, PlainValidator(lambda value: float(Dimension("rad")(value))), PLAIN]

@@ -26,6 +26,7 @@ from compare.read.quantities import (
     Angle,
     CurvatureAlong,
     FileName,
+    ForceByLength,
     InSI,
     Length,
     RigidityAlong,
@@ -77,6 +78,13 @@ class ContactTable(Table):
     """How the vibrissa slides along the object."""
 
     friction: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
+
+
+class WeightTable(Table):
+    """What the vibrissa weighs along x and y; nothing, if nothing is said."""
+
+    x: ForceByLength = 0.0
+    y: ForceByLength = 0.0
 
 
 class StationsTable(Table):
@@ -150,6 +158,7 @@ class CaseFile(Table):
     beam: BeamTable = BeamTable()  # the physics
     support: SupportTable = SupportTable()  # the physics
     contact: ContactTable = ContactTable()  # the physics
+    weight: WeightTable = WeightTable()  # the physics
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
     sweep: StationsTable = StationsTable()  # the physics
     whisk: WhiskTable | None = None  # the physics; instead of a sweep
@@ -168,12 +177,8 @@ class CaseFile(Table):
 
     def physics(self, folder: Path) -> Physics:
         """The vibrissa, how it is held and rubs, and the object, without a sweep."""
-        stiffness = self.support.rotational_stiffness
-        found = Physics(
-            self.beam.build(),
-            self.profile.build(folder),
-            Support(stiffness or math.inf, self.contact.friction, self.support.angle),
-        )
+        held = _support(self.support, self.contact, self.weight)
+        found = Physics(self.beam.build(), self.profile.build(folder), held)
         check_support(found.support, found.beam)
         return found
 
@@ -202,19 +207,25 @@ class CaseFile(Table):
             raise
 
 
+def _support(clamp: SupportTable, contact: ContactTable, weight: WeightTable) -> Support:
+    stiffness = clamp.rotational_stiffness or math.inf
+    return Support(stiffness, contact.friction, clamp.angle, (weight.x, weight.y))
+
+
 class BeamFile(Table):
-    """A file of which only the vibrissa counts, how it is held and how it rubs."""
+    """A file of which only the vibrissa counts, how it is held, how it rubs and what it weighs."""
 
     beam: BeamTable
     support: SupportTable | None = None
     contact: ContactTable | None = None
+    weight: WeightTable | None = None
 
     def provenance(self) -> dict[str, Any]:
         """What the provenance of measured readings says of clamp and contact."""
-        if self.support is None and self.contact is None:
+        if not (self.support or self.contact or self.weight):
             return {}
         clamp, contact = self.support or SupportTable(), self.contact or ContactTable()
-        held = Support(clamp.rotational_stiffness or math.inf, contact.friction, clamp.angle)
+        held = _support(clamp, contact, self.weight or WeightTable())
         check_support(held, self.beam.build())
         return {"support": {}} | support_record(held)
 
@@ -241,7 +252,7 @@ def job_in_the_plane(file: TomlFile) -> Job:
 
 
 def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
-    """The vibrissa of a file's ``[beam]``, ``[support]`` and ``[contact]`` tables.
+    """The vibrissa of a file's ``[beam]``, ``[support]``, ``[contact]`` and ``[weight]`` tables.
 
     Other tables do not matter.
     """

@@ -14,8 +14,9 @@ from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
 from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
-from mujoco_models.model.spec import assemble
+from mujoco_models.model.spec import assemble, set_weight
 from mujoco_models.model.surface import Surface
+from mujoco_models.model.weight import hang
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
 
@@ -71,8 +72,21 @@ class MovingModel(SteppedModel):
         self._lookout = Lookout(scene, obstacle, radius, beam.layout)
         self._foot = self.model.body(FOOT).id
         self._joints = np.unique(self.model.jnt_bodyid[1:])
+        if any(beam.layout.vibrissa.weight):
+            self._hang(beam)
         mujoco.mj_forward(self.model, self.data)
         self._look()
+
+    def _hang(self, beam: Beam) -> None:
+        """Start with the vibrissa at rest under its weight, as no object holds it."""
+        model, data = self.model, self.data
+
+        def imbalance(angles: Floats) -> Floats:
+            data.qpos[1:] = angles
+            mujoco.mj_forward(model, data)
+            return np.asarray(data.qfrc_passive - data.qfrc_bias)[1:]
+
+        data.qpos[1:] = hang(model, beam, self._angle, imbalance)
 
     def _set_contacts(self, motion: Motion) -> None:
         """As `BeamModel` does, or MuJoCo's own parameters."""
@@ -160,7 +174,9 @@ class MovingModel(SteppedModel):
         """Kinetic energy, seen from the foot, over kinetic and elastic energy."""
         seen = self.data.qvel.copy()
         seen[0] += speed
-        return self._share_of_kinetic(seen, slice(1, None), float(self.data.energy[0]))
+        model, data = self.model, self.data
+        lifted = float(model.body_mass @ (data.xipos @ model.opt.gravity))  # against the weight
+        return self._share_of_kinetic(seen, slice(1, None), float(data.energy[0]) + lifted)
 
 
 def _spec(
@@ -179,6 +195,7 @@ def _spec(
         armature=CARRIAGE * MASS,
     )
     give_mass(spec, beam.layout, motion)
+    set_weight(spec, beam.layout, MASS)
     set_options(spec, motion)
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     return spec
@@ -187,7 +204,9 @@ def _spec(
 def give_mass(spec: mujoco.MjSpec, layout: Layout, motion: Motion) -> None:
     """Give the links of a beam their masses, and its joints dampers and armature."""
     stub = float(layout.joints[0]) or _STUB
-    volumes = [stub, *(layout.lengths * layout.thickness**2).tolist()]
+    # A weight by length is of a mass by length.
+    thickness = 1.0 if any(layout.vibrissa.weight) else layout.thickness**2
+    volumes = [stub, *(layout.lengths * thickness).tolist()]
     capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
     for capsule, volume in zip(capsules, volumes[-len(capsules) :], strict=True):
         capsule.mass = MASS * volume

@@ -186,7 +186,9 @@ def calibrate(
     names = checked_unknowns(unknowns, case)
     for one in passes:
         check_size(one, case)
-    measured = Measured.together([measured_under_load(one, noise, len(names)) for one in passes])
+    measured = Measured.together(
+        [measured_under_load(one, case, noise, len(names)) for one in passes]
+    )
     direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))

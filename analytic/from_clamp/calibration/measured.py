@@ -83,7 +83,7 @@ def check_size(readings: Readings, case: Case) -> None:
 
 
 def measured_under_load(
-    readings: Readings, noise: Mapping[str, float] | None, unknowns: int
+    readings: Readings, case: Case, noise: Mapping[str, float] | None, unknowns: int
 ) -> Measured:
     """The stations under load, but for those next to the snap-off."""
     stated = None if noise is None else checked_noise(noise)
@@ -92,7 +92,8 @@ def measured_under_load(
     least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
     spread[1:] = np.maximum(spread[1:], least)
     x = readings.values("foot_x")
-    force = np.hypot(readings.values("force_x"), readings.values("force_y"))
+    w_x, w_y = (w * case.beam.length for w in case.weight)
+    force = np.hypot(readings.values("force_x") + w_x, readings.values("force_y") + w_y)
     loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*spread[1:3])))
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded

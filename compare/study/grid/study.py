@@ -155,6 +155,7 @@ class StudyFile(Table):
     beam: dict[str, Any] = Field(default_factory=dict)
     support: dict[str, Any] = Field(default_factory=dict)
     contact: dict[str, Any] = Field(default_factory=dict)
+    weight: dict[str, Any] = Field(default_factory=dict)
     profile: dict[str, Any] = Field(default_factory=dict)
     sweep: dict[str, Any] = Field(default_factory=dict)
     mujoco: dict[str, Any] = Field(default_factory=dict)

@@ -5,7 +5,7 @@ import pytest
 from analytic import Beam, Case, Sweep, catenary, circle, parabola, solve_sweep
 from analytic.problem.errors import InputError
 from compare import compare
-from mujoco_models import Settings, simulate_sweep
+from mujoco_models import Motion, Settings, simulate_motion, simulate_sweep
 from mujoco_models.model.parts import parts_at_rest
 
 ROUND = circle(1.0, lowest=(0.0, 0.4))
@@ -64,3 +64,15 @@ def test_who_carries_no_weight_says_so():
         simulate_sweep(case, Settings(planar=False))
     with pytest.raises(InputError, match=r"weight_y = -1.*drake"):
         parts_at_rest(case, Settings(), "drake")
+
+
+@pytest.mark.slow
+def test_in_motion_it_starts_at_rest_under_its_weight():
+    case = Case(profile=ROUND, sweep=Sweep(30), weight=(0.3, -2.0))
+    exact = solve_sweep(case)
+    moved = simulate_motion(case, Motion(speed=0.01), Settings(segments=20))
+    first = moved.table.iloc[0]
+    assert first["kinetic_share"] < 1e-4
+    assert first["tip_angle"] == pytest.approx(exact.table["tip_angle"].iloc[0], abs=1e-3)
+    found = compare(exact, moved)
+    assert max(x.rms for x in found.disagreement.values()) < 0.012  # of its speed, mostly
