@@ -42,6 +42,10 @@ class Support(NamedTuple):
         """A vibrissa without weight in this clamp, dimensionless."""
         return replace(beam.unloaded, angle=self.clamp_angle)
 
+    def carried(self, beam: Beam) -> tuple[float, float]:
+        """Weight of the whole vibrissa along x and y [force]."""
+        return self.weight[0] * beam.length, self.weight[1] * beam.length
+
     def at_rest(self, beam: Beam) -> AtRest:
         """A vibrissa that touches nothing, under its weight, dimensionless."""
         unloaded = self.unloaded(beam)

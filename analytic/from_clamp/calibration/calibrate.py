@@ -186,8 +186,9 @@ def calibrate(
     names = checked_unknowns(unknowns, case)
     for one in passes:
         check_size(one, case)
+    carried = case.support.carried(case.beam)
     measured = Measured.together(
-        [measured_under_load(one, case, noise, len(names)) for one in passes]
+        [measured_under_load(one, carried, noise, len(names)) for one in passes]
     )
     direction = measured.ways[0]
     if direction != case.sweep.direction:

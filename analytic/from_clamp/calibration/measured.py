@@ -83,17 +83,21 @@ def check_size(readings: Readings, case: Case) -> None:
 
 
 def measured_under_load(
-    readings: Readings, case: Case, noise: Mapping[str, float] | None, unknowns: int
+    readings: Readings,
+    carried: tuple[float, float],
+    noise: Mapping[str, float] | None,
+    unknowns: int,
 ) -> Measured:
-    """The stations under load, but for those next to the snap-off."""
+    """The stations under load, but for those next to the snap-off; the weight carried is none."""
     stated = None if noise is None else checked_noise(noise)
     known = reading_noise(readings) if stated is None else stated
     spread = np.array([known.get(name, 0.0) for name in SENSED])
     least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
     spread[1:] = np.maximum(spread[1:], least)
     x = readings.values("foot_x")
-    w_x, w_y = (w * case.beam.length for w in case.weight)
-    force = np.hypot(readings.values("force_x") + w_x, readings.values("force_y") + w_y)
+    force = np.hypot(
+        readings.values("force_x") + carried[0], readings.values("force_y") + carried[1]
+    )
     loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*spread[1:3])))
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded

@@ -225,9 +225,12 @@ def _measured(
     passes: Sequence[Readings], noise: Mapping[str, float] | None, numbers: int
 ) -> tuple[Measured, Case]:
     """The stations under load, and the case of the vibrissa past an object to be replaced."""
-    measured = Measured.together([measured_under_load(one, noise, numbers) for one in passes])
     beam: Beam = passes[0].beam
     held = passes[0].support
+    carried = held.carried(beam)
+    measured = Measured.together(
+        [measured_under_load(one, carried, noise, numbers) for one in passes]
+    )
     case = Case(
         beam,
         circle(beam.length, (0.0, 0.5 * beam.length)),
