@@ -121,9 +121,6 @@ def estimate(
     left, logarithm = _without_nuisances(normal, 0)
     freedom = len(readings) - len(rows) * int(np.sum(prior[:-1] == 0))
     square, likely = _likely(left.sum(axis=0), root[:, None] + logarithm.sum(axis=0), freedom)
-    shared, logarithm = _without_nuisances(normal, known)
-    left = _without_nuisances(shared.sum(axis=0, keepdims=True), 0)[0][0]
-    likelihood = _likelihood(left, root[:, None] + logarithm.sum(axis=0), len(readings))
     systems = np.diag(prior) + np.zeros((len(rows), _DRAWS, 1, 1))
     draw = np.random.default_rng(seed)
     for channel in range(readings.shape[1]):
@@ -135,6 +132,10 @@ def estimate(
     narrowest = _without_nuisances(white, known)[0][:, 0]
     together = _posterior(one_by_one.sum(axis=0), narrowest.sum(axis=0))
     by_pass = [_posterior(*one) for one in zip(one_by_one, narrowest, strict=True)]
+    shared, logarithm = _without_nuisances(normal, known)
+    unexplained = np.append(-together[0], 1.0)
+    left = unexplained @ shared.sum(axis=0) @ unexplained
+    likelihood = _likelihood(left, root[:, None] + logarithm.sum(axis=0), len(readings))
     size = sizes[:known]
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
@@ -219,7 +220,7 @@ def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, F
 
 def _likelihood(left: Floats, determinants: Floats, stations: int) -> float:
     """The readings' probability with the best numbers, whatever the noise is like."""
-    square = np.maximum(left[..., 0, 0], stations * _NOISELESS**2)
+    square = np.maximum(left, stations * _NOISELESS**2)
     logarithms = stations * np.log(square) + determinants
     logarithms[1:] -= 2 * np.log(_PRIOR)
     return float(logsumexp(-logarithms / 2, axis=0).sum())
