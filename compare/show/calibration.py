@@ -43,6 +43,8 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
         i, j = max(pairs, key=lambda pair: abs(calibration.correlation[pair]))
         alike = calibration.correlation[i, j]
         yield Text(f"trading off most: {names[i]} and {names[j]}, correlation {alike:+.2f}")
+    if calibration.undistinguished is not None:
+        yield from map(Text, calibration.undistinguished.said())
     yield Text(f"the fit leaves {calibration.misfit:.2g} times the noise")
     for said in calibration.noise.said(CLAMP_READINGS):
         yield Text(f"{said}; the intervals know it")
@@ -68,6 +70,7 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
         ),
         "hum_stations": calibration.noise.hum or None,
         "jitter": calibration.jitter,
+        "undistinguished": calibration.undistinguished,
         "passes": None
         if calibration.passes is None
         else {

@@ -38,7 +38,7 @@ from compare.show.figures.readings import (
 )
 from compare.show.numbers import percent, place, quantity, sentence, short, words
 from compare.show.style import ALONG, PHASE_LETTERS, SYMBOLS, Along
-from compare.show.validity import validation_lines, validation_tables
+from compare.show.validity import validation_claim, validation_lines, validation_tables
 from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
 
 
@@ -72,19 +72,26 @@ def plane_document(
 def plane_summary(comparison: Comparison) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
     yield plane_verdict(comparison)
+    yield from map(Text, validation_lines(comparison))
     yield tiles_table(plane_tiles(comparison))
     yield from apart_table(comparison)
-    yield from map(Text, validation_lines(comparison))
 
 
 def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:
-    """Whether the two agree, and why not: the cause first, if it is known."""
+    """Whether the two agree, and why not: the cause first, if it is known.
+
+    Of a validation first whether there is anything to explain, given what is uncertain.
+    """
     said, likely = verdict(comparison, budget), ""
     if comparison.likely:
         said, likely = sentence(why(comparison)), said
     elif budget is None:
         likely = why(comparison)
-    return agreement(comparison, said, likely)
+    found = agreement(comparison, said, likely)
+    if comparison.validation is None:
+        return found
+    claim = f"{validation_claim(comparison.validation)} By the tolerances, {found.claim}"
+    return replace(found, claim=claim)
 
 
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:

@@ -19,6 +19,14 @@ def validation_lines(comparison: Comparison) -> list[str]:
     return [] if found is None else [*_lines(found, comparison.reference.beam)]
 
 
+def validation_claim(found: Validation) -> str:
+    """Whether a disagreement says anything, in a sentence."""
+    sizes = short(found.whole.error), short(found.whole.limit)
+    if found.resolved:
+        return "The disagreement, {} rms, is resolved: only {} is uncertain.".format(*sizes)
+    return "The disagreement, {} rms, is not resolved: {} is uncertain.".format(*sizes)
+
+
 def standard_of(name: str, value: float, beam: Beam) -> str:
     """A standard uncertainty with its unit, where that is known."""
     if name in GAINS:

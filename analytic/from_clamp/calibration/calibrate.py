@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
+from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
 from analytic.from_clamp.calibration.unknowns import (
     UNKNOWNS,
     Sought,
@@ -32,7 +33,6 @@ AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
 DOUBLE_SIDED_95 = 1.959964
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
-_WIDEST = 0.25  # half an interval that says something, of a dimensionless number
 _NOISE_KNOWN_TO = 1.1  # times what is stated
 _CHANCE = 3.0  # standard deviations of a misfit, which is 1 +- 1/sqrt(2 n)
 _SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
@@ -91,6 +91,9 @@ class Calibration(Shown):
         stiffness and over the case's units, and whether these differ by noise alone.
     scatter : dict
         Standard deviation of what each pass alone says, by unknown; empty for one pass.
+    undistinguished : Undistinguished or None
+        Where two unknowns trade off (correlation beyond 0.9): the direction in which all unknowns
+        may be off at once, and which further sweep would narrow it.
     """
 
     found: dict[str, Estimate]
@@ -103,6 +106,7 @@ class Calibration(Shown):
     jitter: float
     passes: Consistency | None
     scatter: dict[str, float]
+    undistinguished: Undistinguished | None
 
     @property
     def misfit_shows(self) -> bool:
@@ -193,14 +197,19 @@ def calibrate(
     direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
-    fit = VibrissaFit(measured, case, [UNKNOWNS[name] for name in names])
+    kinds = [UNKNOWNS[name] for name in names]
+    fit = VibrissaFit(measured, case, kinds)
     fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
     covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
+    alike_most = np.abs(covariance / np.outer(deviations, deviations) - np.eye(len(names))).max()
+    hidden = None
+    if alike_most > _ALIKE:
+        hidden = undistinguished(fit, numbers, covariance, _zero(fit.measured))
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
         _check_inside(name, number, fit.sought(numbers))
-        if not DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
-            raise _not_distinguished(names, covariance, i)
+        if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
+            raise _not_distinguished(names, covariance, i, hidden)
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass) if len(passes) > 1 else None
 
@@ -222,6 +231,7 @@ def calibrate(
         float(fit.measured.spread[0]),
         alike,
         {name: (one.highest - one.lowest) / 2 for name, one in scattered.items()},
+        hidden,
     )
 
 
@@ -310,7 +320,7 @@ def _knowing_the_noise(
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
     measured = fit.measured
-    zero: Floats = _ZERO * np.abs(measured.readings).max(axis=1)
+    zero = _zero(measured)
     nuisances = fit.whitening
     if len(measured.rows) > 1:
         along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
@@ -333,6 +343,11 @@ def _knowing_the_noise(
     return numbers, replace(found, by_pass=by_pass)
 
 
+def _zero(measured: Measured) -> Floats:
+    """What the zeros of the readings are known to."""
+    return np.asarray(_ZERO * np.abs(measured.readings).max(axis=1))
+
+
 def _check_inside(name: str, number: float, sought: Sought) -> None:
     """Refuse what is best at an end of what a number can be that the quantity has not."""
     kind = UNKNOWNS[name]
@@ -343,7 +358,9 @@ def _check_inside(name: str, number: float, sought: Sought) -> None:
             raise InputError(f"{name} of the best fit", value, "a vibrissa's", remedy)
 
 
-def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -> InputError:
+def _not_distinguished(
+    names: tuple[str, ...], covariance: Floats, which: int, hidden: Undistinguished | None
+) -> InputError:
     """The error for unknowns of which the readings say too little."""
     sizes = np.sqrt(np.diag(covariance))
     alike = np.abs(covariance[which] / sizes / sizes[which])
@@ -354,7 +371,8 @@ def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -
         allowed = "something that these readings determine"
         return InputError("unknowns", names[which], allowed, remedy)
     undone = f"a change of one undoes that of the other (correlation {alike[other]:.4f})"
-    remedy = f"{undone}: state one of them, take less noise, or sweep further"
+    more = "" if hidden is None else f" ({'; '.join(hidden.said())})"
+    remedy = f"{undone}: state one of them, take less noise, or sweep further{more}"
     both, allowed = f"{names[which]} and {names[other]}", "ones that these readings distinguish"
     return InputError("unknowns", both, allowed, remedy)
 

@@ -46,6 +46,7 @@ class Unknown(Number):
     unit: Callable[[Case], float]  # of the quantity, in the case as it was given
     # Whether the quantity itself can be as at either end: a clamp can be rigid.
     possible: tuple[bool, bool] = (False, False)
+    widest: float = 0.25  # half an interval that says something
     said: str = ""  # what a user calls the quantity, if that is another one
 
     @property
@@ -96,7 +97,12 @@ UNKNOWNS: dict[str, Unknown] = {
         unit=lambda given: 1 / given.beam.length,
     ),
     "clamp_angle": Unknown(
-        "clamp_angle", -_MOST_LEANT, _MOST_LEANT, (-0.1, 0.1), unit=lambda given: 1.0
+        "clamp_angle",
+        -_MOST_LEANT,
+        _MOST_LEANT,
+        (-0.1, 0.1),
+        unit=lambda given: 1.0,
+        widest=0.0087,  # half a degree: clamps lean by one or two
     ),
     "tip_radius": Unknown(
         "tip_radius",

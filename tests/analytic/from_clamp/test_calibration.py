@@ -23,6 +23,7 @@ from analytic import (
 from analytic.from_clamp.calibration.fit import VibrissaFit
 from analytic.from_clamp.calibration.measured import measured_under_load
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS
+from tests.analytic.bvp_rig import BEAM, CENTRE, RADIUS, circle_sweep, one_pass
 from tests.analytic.noisy import noisy
 
 CIRCLE = circle(1.0, lowest=(0, 0.4))
@@ -230,6 +231,52 @@ def test_passes_are_pooled():
     apart = calibrate([*passes, other], SOFT, unknowns[:1], noise)
     assert not apart.passes.consistent and not apart.explains
     assert apart.passes.farthest == 3
+
+
+def leant(rows=400, noise=0.01, passes=1, until=1.0):
+    """Passes in a clamp that leans by 2 degrees, by SciPy's boundary-value solver."""
+    sweep, rng = circle_sweep(angle=np.deg2rad(2)), np.random.default_rng(4)
+    sweep = sweep[:, : int(until * sweep.shape[1])]
+    return [one_pass(rng, rows, noise, sweep, zero=1e-3) for _ in range(passes)]
+
+
+UPRIGHT = Case(BEAM, circle(RADIUS, lowest=(CENTRE[0], CENTRE[1] - RADIUS)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beside", [[], ["flexural_rigidity"], ["offset"]])
+def test_a_clamp_that_leans_is_found_to_a_twentieth_of_a_degree(beside):
+    found = calibrate(leant(passes=3), UPRIGHT, ["clamp_angle", *beside]).found["clamp_angle"]
+    assert np.rad2deg(found.value) == pytest.approx(2, abs=0.05)
+    assert np.rad2deg(found.highest - found.lowest) < 0.1
+    assert found.lowest < np.deg2rad(2) < found.highest
+
+
+@pytest.mark.slow
+def test_a_clamp_that_leans_is_not_found_where_nothing_distinguishes_it():
+    """On half of the sweep an offset and a curvature do the same as a lean."""
+    unknowns = ["clamp_angle", "natural_curvature", "offset"]
+    with pytest.raises(InputError, match=r"distinguish.*hardly distinguished.*all at once"):
+        calibrate(leant(noise=0.01, until=0.5), UPRIGHT, unknowns)
+
+
+@pytest.mark.slow
+def test_the_sweep_that_separates_does_as_much_as_is_said():
+    """Along the direction that is named, the interval of both sweeps over that of one."""
+    unknowns, rng = ["clamp_angle", "natural_curvature", "offset"], np.random.default_rng(6)
+    ways = [replace(UPRIGHT, sweep=Sweep(100, direction=way)) for way in ("left", "right")]
+    exact = [solve_sweep(case) for case in ways]
+    noise = relative_noise(exact, 0.002)
+    left, right = (noisy(one, noise, rng) for one in exact)
+    one = calibrate(left, UPRIGHT, unknowns, noise)
+    both = calibrate([left, right], UPRIGHT, unknowns, noise)
+    hidden = one.undistinguished
+    assert hidden is not None
+    name = max(hidden.along, key=lambda name: abs(hidden.along[name]))
+    half = (one.found[name].highest - one.found[name].lowest) / 2
+    assert abs(hidden.along[name]) == pytest.approx(half, rel=0.1)
+    ratio = (both.found[name].highest - both.found[name].lowest) / 2 / half
+    assert hidden.sweeps["a sweep to the right"] == pytest.approx(ratio, rel=0.4)
 
 
 @pytest.mark.trial
