@@ -23,8 +23,10 @@ from compare.simulate.treatment import (
     at_clamp,
     contacts,
     damped,
+    beginning_later,
     first_stiffness,
     frictionless,
+    half_cell,
     hardened,
     hardest,
     held,
@@ -103,7 +105,9 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
                      f"{'lower' if off < 0 else 'higher'} than its joints say: "
                      f"{_cause(found, own[0] / rigidity[0])}",
-                     edits=stiffened(found, {0: first_stiffness(found)}))  # fmt: skip
+                     "begin half a cell later" if half_cell(found) else "",
+                     beginning_later(found) or stiffened(found, {0: first_stiffness(found)})
+                     )  # fmt: skip
     for i, (joint, off_by) in list(enumerate(zip(found.joints, own / rigidity - 1, strict=True)))[
         1:-1
     ]:

@@ -17,6 +17,7 @@ _CONTACT = 4e3  # EI/L^3; of the softest contact
 _IMPEDANCE = 0.9  # with 0.99 a quarter of all stations chatter
 _BESIDE = 0.01  # of the first joint's place
 _DAMPING = 0.05  # ratio
+_RIGID_CELL = 0.75  # of a cell; where a first joint is behind it
 _RIGID = 2e3  # EI/L and EI/L^3; what gives way by so little moves no reading by 0.5 per cent
 _INERTIA = 1e6  # of a carriage, in masses of the vibrissa
 
@@ -103,6 +104,21 @@ def damped(found: MeasuredBeam) -> tuple[Edit, ...]:
     )
 
 
+def half_cell(found: MeasuredBeam) -> float:
+    """By how much later a vibrissa should begin whose first cell is rigid, and not by a spring."""
+    first = found.joints[0].s
+    cell = float(np.median(np.diff([joint.s for joint in found.joints])))
+    return first - cell / 2 if found.springs != "joints" and first > _RIGID_CELL * cell else 0.0
+
+
+def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
+    """Sensors in the middle of a rigid first cell, where a beam of its other cells is clamped."""
+    sensors = tuple(s.number for s in (found.force, found.torque) if s is not None)
+    if not (sensors and half_cell(found) and found.body):
+        return ()
+    return _site(found, "half-cell"), Edit("sensor", (("site", "half-cell"),), sensors)
+
+
 def first_stiffness(found: MeasuredBeam) -> float:
     """Of the first joint, such that the tip gives way as it is meant to."""
     arms = joint_arms(found)
@@ -142,15 +158,19 @@ def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     """Sensors at the clamp."""
     if not found.body:
         return ()
-    place = " ".join(
-        f"{x:.6g}" for x in np.round(found.frame[0] / found.length, 9) * found.length + 0.0
-    )
-    xy = " ".join(f"{x:.9g}" for x in np.round(found.frame[1:3].ravel(), 9) + 0.0)
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
     return (
-        Insert(f'<site name="clamp-{words[0]}" pos="{place}" xyaxes="{xy}"/>', found.body),
+        _site(found, f"clamp-{words[0]}"),
         Insert(f"<sensor>{names}</sensor>"),
     )
+
+
+def _site(found: MeasuredBeam, name: str) -> Insert:
+    """Where the vibrissa should begin, along the axes of the sweep."""
+    at = (found.frame[0] + half_cell(found) * found.frame[2]) / found.length
+    place = " ".join(f"{x:.6g}" for x in np.round(at, 9) * found.length + 0.0)
+    xy = " ".join(f"{x:.9g}" for x in np.round(found.frame[1:3].ravel(), 9) + 0.0)
+    return Insert(f'<site name="{name}" pos="{place}" xyaxes="{xy}"/>', found.body)
 
 
 def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:

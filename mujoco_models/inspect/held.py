@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.inspect.parts import Parts
+from mujoco_models.inspect.parts import Parts, masses_of
 
 _TURNS = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)
 _PLACES = 2  # the last of a free joint's coordinates that slide
+_ON_PIECE = 0.05  # of its length, by which a site may be aside of the first piece
 _HEAVY = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 
 
@@ -51,7 +52,7 @@ class HeldModel:
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
-        self._masses = model.body_mass[list(parts.chain)]
+        self._masses = masses_of(model, parts.chain)
         # A length for what slides, and 1 for what turns.
         self.units = np.where(
             np.isin(model.jnt_type[model.dof_jntid], _TURNS) | _turns_freely(model), 1.0,
@@ -73,6 +74,17 @@ class HeldModel:
     def load(self, force: Floats, torque: Floats) -> None:
         """Load the tip."""
         self._force[:], self._torque[:] = force, torque
+
+    def begin(self, first: Floats, second: Floats) -> Floats:
+        """Where the vibrissa begins: at the torque sensor, if its first piece goes past that."""
+        if self.parts.torque is None:
+            return first
+        way = second - first
+        place, _ = self.site(self.parts.torque)
+        share = (place - first) @ way / (way @ way)
+        aside = np.linalg.norm(place - first - share * way)
+        there = 0 < share < 1 and aside < _ON_PIECE * np.linalg.norm(way)
+        return np.asarray(first + share * way if there else first)
 
     def sensed(self, sensor: int) -> Floats:
         """What a sensor reads."""

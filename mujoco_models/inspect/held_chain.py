@@ -58,10 +58,13 @@ class HeldChain(HeldModel):
 
     @property
     def clamp(self) -> Floats:
-        """Where the vibrissa begins: the end of its first geom that is farther from the tip."""
+        """Where the vibrissa begins: the end of its first geom that is farther from the tip.
+
+        Of a plugin's chain, whose first cell nothing makes bend, in it if the sensor is there.
+        """
         ends = self._world(axis_of(self.model, self.parts.geoms[0]), self._body(0))
-        reach = np.linalg.norm(ends - self.tip, axis=1)
-        return np.asarray(ends[int(np.argmax(reach))])
+        near, far = ends[np.argsort(np.linalg.norm(ends - self.tip, axis=1))]
+        return self.begin(far, near) if self.parts.plugin else np.asarray(far)
 
     @property
     def joints(self) -> Floats:

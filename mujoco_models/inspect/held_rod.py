@@ -28,7 +28,6 @@ _SMALL = 1e-2  # EI/L^2 and EI/L; what bends by so little does so linearly, to 1
 _TINY = 1e-3  # likewise, for what stretches; and the strain that is linear
 _HARD = 0.9999  # impedance; MuJoCo takes no more
 _TOLERANCE = 1e-16  # of MuJoCo's solver; with 0 it warns that it does not get there
-_ON_EDGE = 0.05  # of its length, by which a site may be aside of the first edge
 
 
 class HeldRod(HeldModel):
@@ -83,15 +82,7 @@ class HeldRod(HeldModel):
     @property
     def clamp(self) -> Floats:
         """Where the vibrissa begins: at the torque sensor, if the first edge goes past that."""
-        first, second = self.vertices[:2]
-        if self.parts.torque is None:
-            return np.asarray(first)
-        way = second - first
-        place, _ = self.site(self.parts.torque)
-        share = (place - first) @ way / (way @ way)
-        aside = np.linalg.norm(place - first - share * way)
-        there = 0 < share < 1 and aside < _ON_EDGE * np.linalg.norm(way)
-        return np.asarray(first + share * way if there else first)
+        return self.begin(*self.vertices[:2])
 
     def unload(self) -> None:
         """Take loads away and put the rod to rest as it is by itself."""

@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias, cast
 
 import mujoco
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
@@ -23,7 +24,7 @@ from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed, nearest_axes
-from mujoco_models.inspect.parts import Names, Parts, find
+from mujoco_models.inspect.parts import Names, Parts, find, masses_of
 from mujoco_models.inspect.probe import probe_of
 from mujoco_models.inspect.touching import self_contacts, thickness, touching
 from mujoco_models.motion import IntegratorKind
@@ -38,7 +39,7 @@ _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that
 def inspect_model(path: Path, names: Names) -> MeasuredBeam:
     """Load a model, find its vibrissa, and measure it."""
     model = load(path, names.site)
-    with unlogged():
+    with unlogged(), threadpool_limits(1):  # the matrices are small
         return measure(model, find(model, names), path)
 
 
@@ -87,7 +88,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         body_mass=float(model.body_mass[parts.foot]),
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes])
         @ _on_body(held, parts.foot),
-        springs=_springs(model, parts),
+        springs=_springs(parts),
         drive=drive_of(model, parts.foot, -axes[0]),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
@@ -99,7 +100,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         loads=loads,
         bent=bent,
         straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
-        mass=float(model.body_mass[list(parts.chain)].sum()),
+        mass=float(masses_of(model, parts.chain).sum()),
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, squares, damping),
@@ -192,7 +193,8 @@ def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
 def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
     """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
     for i in np.flatnonzero(model.eq_active0).tolist():
-        for body in set(bodies_of_constraint(model, i)).intersection(parts.chain):
+        bodies = model.body_weldid[bodies_of_constraint(model, i)].tolist()
+        for body in set(bodies).intersection(parts.chain):
             raise InputError(
                 f"body {model.body(body).name!r} of the vibrissa",
                 "held by an equality constraint", "one that springs alone hold",
@@ -211,7 +213,7 @@ def _joints(
     bodies = held.parts.chain
     names = [held.model.body(body).name or f"body {body}" for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
-    masses = held.model.body_mass[list(bodies)]
+    masses = masses_of(held.model, bodies)
     figures = np.stack([s, np.diff(bounds), compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
         Joint(name, (*joints_of(held.model, body),), *row)
@@ -318,11 +320,10 @@ def _on_body(held: Held, body: int) -> Floats:
     return np.array(held.data.xmat[body].reshape(3, 3))
 
 
-def _springs(model: mujoco.MjModel, parts: Parts) -> Literal["joints", "plugin", "flex"]:
+def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:
     if parts.rod is not None:
         return "flex"
-    plugins = getattr(model, "body_plugin", np.full(model.nbody, -1))[list(parts.chain)]
-    return "plugin" if (plugins >= 0).any() else "joints"
+    return "plugin" if parts.plugin else "joints"
 
 
 def _feels_contacts(held: Held, sensor: int) -> bool:

@@ -43,6 +43,7 @@ class Parts:
     force: int | None  # the sensors at its clamp; None if there is none
     torque: int | None  # the sensors at its clamp; None if there is none
     rod: Rod | None = None  # the flex that it is, instead of geoms on hinges
+    plugin: bool = False  # whether MuJoCo 3's plugin of cables bends it
 
 
 def find(model: mujoco.MjModel, names: Names) -> Parts:
@@ -59,7 +60,7 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
         foot = _named("--foot", names.foot, "body", known)
         chains = [chain for chain in chains if foot in _holders(model, chain[0])]
     if asked is not None:
-        bodies = set(model.geom_bodyid[asked].tolist())
+        bodies = set(model.body_weldid[model.geom_bodyid[asked]].tolist())
         chains = [chain for chain in chains if bodies.intersection(chain)]
     if not chains:
         raise InputError(
@@ -98,7 +99,9 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
             ("--torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
         )
     )
-    return Parts(holders[-1], chain, tuple(geoms), force, torque, rod)
+    plugins = getattr(model, "body_plugin", np.full(model.nbody, -1))[list(chain)]
+    plugin = bool((plugins >= 0).any())
+    return Parts(holders[-1], chain, tuple(geoms), force, torque, rod, plugin)
 
 
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
@@ -134,6 +137,11 @@ def _turn(quaternion: Floats) -> Floats:
     return turn.reshape(3, 3)
 
 
+def masses_of(model: mujoco.MjModel, chain: Chain) -> Floats:
+    """Of its links, with all that is fixed to them."""
+    return np.bincount(model.body_weldid, model.body_mass, model.nbody)[list(chain)]
+
+
 def radius_of(model: mujoco.MjModel, geom: int) -> float:
     """Half the thickness of a geom."""
     if int(model.geom_type[geom]) in (*_SLENDER, _SPHERE):
@@ -147,11 +155,12 @@ def _chains(model: mujoco.MjModel) -> list[Chain]:
     bends = np.isin(model.jnt_type, _BENDS)
     bends[driven] = False
     bending = {*model.jnt_bodyid[bends].tolist()}
-    inner = {*model.body_parentid[[*bending]].tolist()}
+    holder = model.body_weldid[model.body_parentid]  # what is fixed to a link is part of it
+    inner = {*holder[[*bending]].tolist()}
     chains = []
     for body in sorted(bending - inner):
         row = [body]
-        while (parent := int(model.body_parentid[row[-1]])) in bending:
+        while (parent := int(holder[row[-1]])) in bending:
             row.append(parent)
         if len(row) >= _FEWEST:
             chains.append(tuple(reversed(row)))
@@ -191,7 +200,7 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
 
 def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
     """The geoms of a body, but for those that are only seen beside others that collide."""
-    geoms = np.flatnonzero(model.geom_bodyid == body)
+    geoms = np.flatnonzero(model.body_weldid[model.geom_bodyid] == body)
     collide = (model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)
     return [int(geom) for geom in (geoms[collide] if collide.any() else geoms)]
 

@@ -29,7 +29,7 @@ class Links:
         """Along the link; a piece that is fixed to the foot ends at the first joint."""
         geom = next(g for g in self.data.contact.geom[contact].tolist() if g in self.geoms)
         point = self.data.contact.pos[contact] + radius_of(self.model, geom) * inward
-        body = int(self.model.geom_bodyid[geom])
+        body = int(self.model.body_weldid[self.model.geom_bodyid[geom]])
         if body not in self.chain:
             short = (self._joint(0) - point) @ self._direction(0)
             return float(np.clip(self.nodes[0] - short, 0, self.nodes[0]) / self.nodes[-1])

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import asdict, replace
 
+from threadpoolctl import threadpool_limits
+
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
@@ -34,7 +36,7 @@ def run_user_model(
     """Sweep a user's model to the left; see `mujoco_models.simulate_model`."""
     model = load(own.file, own.site)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms, own.site))
-    with unlogged():
+    with unlogged(), threadpool_limits(1):
         measured = measure(model, parts, own.file)
         held = hold(model, parts)
         held.unload()
