@@ -69,9 +69,10 @@ class Beam:
     def __post_init__(self) -> None:
         length = positive("beam.length", self.length)
         radius, tip_radius = checked_radii(self.radius, self.tip_radius, length)
+        cone = tip_radius not in (None, radius)
         for name, value in (
             ("length", length),
-            ("flexural_rigidity", checked_rigidity(self.flexural_rigidity, length)),
+            ("flexural_rigidity", checked_rigidity(self.flexural_rigidity, length, cone)),
             ("radius", radius),
             ("tip_radius", tip_radius),
             ("natural_curvature", checked_curvature(self.natural_curvature, length)),

@@ -17,12 +17,13 @@ _PLACES = 257  # at which a vibrissa at rest is looked at
 _MOST_CURVED = math.pi * (1 - 1e-12)  # 1/L; an arc of more is back at the foot line
 
 
-def checked_rigidity(given: object, length: float) -> float | Along:
-    """The flexural rigidity of a vibrissa."""
+def checked_rigidity(given: object, length: float, of_cone: bool) -> float | Along:
+    """The flexural rigidity of a vibrissa; of a cone only a number follows its radius."""
     name = "beam.flexural_rigidity"
     found = Along.of(name, given, length) if _may_vary(given) else given
     if not isinstance(found, Along):
-        return positive(name, found)
+        value = positive(name, found)
+        return Along((0.0, length), ((value,),)) if of_cone and _may_vary(given) else value
     place = found.first_not_positive()
     if place is not None:
         value = float(found(np.array(place)))

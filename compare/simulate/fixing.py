@@ -12,9 +12,10 @@ from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
     as_intended,
     clamp_stiffness,
+    is_cone,
     is_curved,
+    radii,
     smooth_rigidity,
-    tapers,
 )
 from mujoco_models import inspect_model
 from mujoco_models.fix.edit import Edit, Insert
@@ -77,9 +78,9 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
     """A case file: the vibrissa that the model is, past a circle."""
     length, rigidity = found.length, as_intended(found)
     meeting = [geom for geom in found.geoms if geom.meets] or found.geoms
-    radius, tip = meeting[0].radius, meeting[-1].radius
-    along = f"{rigidity:.6g}"
-    if tapers(found):
+    radius, tip = radii(found)
+    along = f"{smooth_rigidity(found, np.zeros(1))[0] if tip != radius else rigidity:.6g}"
+    if not is_cone(found):
         s = np.linspace(0, length, _STATIONS)
         pairs = zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True)
         along = f"[{', '.join(f'[{at:.6g}, {ei:.6g}]' for at, ei in pairs)}]"

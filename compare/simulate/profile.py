@@ -18,8 +18,7 @@ def profile(found: MeasuredBeam) -> dict[str, tuple[Floats, Floats]]:
     s, cells, compliances, angles, damping, masses = np.array([
         [j.s, j.cell, j.compliance, j.angle, j.damping, j.mass] for j in found.joints
     ]).T  # fmt: skip
-    middles = [(geom.start + geom.end) / 2 for geom in found.geoms]
-    radius = np.interp(s, middles, [geom.radius for geom in found.geoms])
+    radius = np.interp(s, [g.middle for g in found.geoms], [g.radius for g in found.geoms])
     links = np.diff(s, append=found.length)
     measured = {
         "EI": (cells / compliances, radius**4),

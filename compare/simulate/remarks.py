@@ -12,17 +12,21 @@ from compare.simulate.rigidity import (
     as_stated,
     at_its_tip,
     by_its_clamp,
+    by_its_links,
     contact_stiffness,
     elastica_error,
     is_curved,
+    radii,
     smooth_rigidity,
     tapers,
+    unevenness,
 )
 from compare.simulate.treatment import (
     HARD,
     at_clamp,
     contacts,
     damped,
+    evened,
     beginning_later,
     first_stiffness,
     frictionless,
@@ -86,6 +90,7 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
     said = [
         *_stiffness(found),
         *_stated(found, stated),
+        *(_surface(found) if stated is None else ()),
         *_units(found, stated),
         *_rest(found, stated),
         *_plane(found),
@@ -108,6 +113,11 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
                      "begin half a cell later" if half_cell(found) else "",
                      beginning_later(found) or stiffened(found, {0: first_stiffness(found)})
                      )  # fmt: skip
+    coarse = by_its_links(found) / at_its_tip(found) - 1
+    if abs(coarse) > _RIGIDITY:
+        yield Remark("fault", "links", f"too few{' for its taper' if tapers(found) else ''}: the "
+                     f"tip gives way like one of EI {abs(coarse):.1%} "
+                     f"{'lower' if coarse < 0 else 'higher'}", "take more")  # fmt: skip
     for i, (joint, off_by) in list(enumerate(zip(found.joints, own / rigidity - 1, strict=True)))[
         1:-1
     ]:
@@ -153,7 +163,7 @@ def _cause(found: MeasuredBeam, first: float) -> str:
         return "the first link is rigid over a whole cell, half a cell too much"
     if abs(first - 1) > _JOINT:
         return f"the first joint is {first:.2g} times as stiff as its cell"
-    return "too few links for its taper" if tapers(found) else "too few links"
+    return "too few links near it"
 
 
 def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
@@ -170,13 +180,27 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
             yield Remark("fault", what, f"{measured:.6g}, which is {abs(off):.1%} "
                          f"{'more' if off > 0 else 'less'} than stated ({wanted:.6g})",
                          edits=edits)  # fmt: skip
-    middles = np.array([(geom.start + geom.end) / 2 for geom in found.geoms])
+    middles = np.array([geom.middle for geom in found.geoms])
     wanted_radii = stated.radius_at(np.clip(middles, 0, stated.length))
     radii = np.array([geom.radius for geom in found.geoms])
     worst = int(np.argmax(np.abs(radii - wanted_radii)))
     if abs(radii[worst] - wanted_radii[worst]) > _RADIUS * found.length:
         yield Remark("fault", "radius", f"{radii[worst]:.4g} instead of {wanted_radii[worst]:.4g}, "
                      f"at s = {middles[worst] / found.length:.2f} L")  # fmt: skip
+
+
+def _surface(found: MeasuredBeam) -> Iterator[Remark]:
+    """Whether it is as thick as a cylinder or a cone."""
+    off = unevenness(found)
+    worst = max(off, key=lambda geom: abs(off[geom]), default=found.geoms[0])
+    step = off.get(worst, 0.0) / found.length
+    if abs(step) > _RADIUS:
+        start, end = radii(found)
+        yield Remark("fault", "radius", f"{worst.name!r} is {abs(step):.1e} L "
+                     f"{'thicker' if step > 0 else 'thinner'} than a straight course from "
+                     f"{start:.4g} to {end:.4g}: what touches it feels steps",
+                     "give all geoms one radius, or a straight taper", evened(found, off)
+                     )  # fmt: skip
 
 
 def _in_other_units(found: MeasuredBeam, stated: Beam) -> bool:

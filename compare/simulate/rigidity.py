@@ -5,7 +5,7 @@ import numpy as np
 from analytic import Beam
 from analytic.problem.arrays import Floats
 from compare.measure.cantilever import tip_of
-from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.inspect.measured import Geom, MeasuredBeam
 
 _POINTS = 2001  # of an integral along the beam
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
@@ -42,11 +42,15 @@ def as_intended(found: MeasuredBeam) -> float:
 
 def at_its_tip(found: MeasuredBeam) -> float:
     """The same of a beam that is as curved, whose tip moves by less."""
-    s = np.linspace(0, found.length, _POINTS)
+    return float(found.length**3 / (3 * flexibility(found, 0.0, found.length)))
+
+
+def flexibility(found: MeasuredBeam, start: float, end: float) -> float:
+    """How far the tip moves under a unit force by what bends between two arc lengths."""
+    s = np.linspace(start, end, _POINTS)
     at = np.array([0.0, *(joint.s for joint in found.joints), found.length])
     arms = np.interp(s, at, [joint_arms(found)[0] + found.joints[0].s, *joint_arms(found), 0.0])
-    flexibility = np.trapezoid(arms**2 / smooth_rigidity(found, s), s)
-    return float(found.length**3 / (3 * flexibility))
+    return float(np.trapezoid(arms**2 / smooth_rigidity(found, s), s))
 
 
 def joint_arms(found: MeasuredBeam) -> Floats:
@@ -77,10 +81,17 @@ def elastica_error(found: MeasuredBeam) -> float:
 
 def by_its_clamp(found: MeasuredBeam) -> float:
     """EI that the tip shows by the first joint as it is and all others as they are meant."""
-    rigidity = smooth_rigidity(found)
-    compliance = np.array([joint.cell for joint in found.joints]) / rigidity
-    compliance[0] = found.joints[0].compliance
-    return float(found.length**3 / (3 * compliance @ joint_arms(found) ** 2))
+    first = found.joints[0]
+    others = flexibility(found, first.cell, found.length)
+    own = first.compliance * joint_arms(found)[0] ** 2
+    return float(found.length**3 / (3 * (own + others)))
+
+
+def by_its_links(found: MeasuredBeam) -> float:
+    """EI that the tip shows by joints that stand for all of their cells, but for the first."""
+    cells = np.array([joint.cell for joint in found.joints])
+    each = cells / smooth_rigidity(found) * joint_arms(found) ** 2
+    return float(found.length**3 / (3 * (flexibility(found, 0.0, cells[0]) + each[1:].sum())))
 
 
 def clamp_stiffness(found: MeasuredBeam) -> float:
@@ -97,6 +108,31 @@ def contact_stiffness(found: MeasuredBeam) -> float:
     stiffness = [g.stiffness for g in found.geoms if g.meets and np.isfinite(g.stiffness)]
     unit = as_intended(found) / found.length**3
     return float(np.median(stiffness) / unit) if stiffness else float("nan")
+
+
+def radii(found: MeasuredBeam) -> tuple[float, float]:
+    """At the clamp and at the tip, of what touches; beads on a thinner rod are one cylinder."""
+    own = [geom.radius for geom in found.geoms if geom.meets] or [found.geoms[0].radius]
+    return (own[0], own[-1]) if own[-1] <= own[0] else (max(own), max(own))
+
+
+def unevenness(found: MeasuredBeam) -> dict[Geom, float]:
+    """By how much geoms that touch are thicker than a straight course of radii."""
+    start, end = radii(found)
+    return {
+        geom: geom.radius - start - (end - start) * geom.middle / found.length
+        for geom in found.geoms
+        if geom.meets
+    }
+
+
+def is_cone(found: MeasuredBeam) -> bool:
+    """Whether EI goes with the fourth power of a radius that is linear along it."""
+    start, end = radii(found)
+    s = np.linspace(0, 1, _POINTS)
+    own = smooth_rigidity(found, s * found.length)
+    meant = own[0] * (1 + (end / start - 1) * s) ** 4
+    return bool(np.abs(own - meant).max() <= _UNEVEN * own.mean())
 
 
 def tapers(found: MeasuredBeam) -> bool:

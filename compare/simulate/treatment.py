@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from compare.simulate.rigidity import as_intended, at_its_tip, joint_arms, smooth_rigidity
+from compare.simulate.rigidity import as_intended, flexibility, joint_arms
 from mujoco_models.fix.edit import Edit, Insert, number
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
 
@@ -17,6 +17,7 @@ _CONTACT = 4e3  # EI/L^3; of the softest contact
 _IMPEDANCE = 0.9  # with 0.99 a quarter of all stations chatter
 _BESIDE = 0.01  # of the first joint's place
 _DAMPING = 0.05  # ratio
+_EVEN = 1e-5  # L
 _RIGID_CELL = 0.75  # of a cell; where a first joint is behind it
 _RIGID = 2e3  # EI/L and EI/L^3; what gives way by so little moves no reading by 0.5 per cent
 _INERTIA = 1e6  # of a carriage, in masses of the vibrissa
@@ -104,6 +105,18 @@ def damped(found: MeasuredBeam) -> tuple[Edit, ...]:
     )
 
 
+def evened(found: MeasuredBeam, off: dict[Geom, float]) -> tuple[Edit, ...]:
+    """Geoms as thick as a straight course of radii, if all are round."""
+    if not all(geom.size for geom in off):
+        return ()
+    alike: dict[str, list[int]] = {}
+    for geom, thicker in off.items():
+        if abs(thicker) > _EVEN * found.length:
+            size = " ".join(f"{x:.5g}" for x in (geom.radius - thicker, *geom.size[1:]))
+            alike.setdefault(size, []).append(geom.number)
+    return tuple(Edit("geom", (("size", size),), (*mine,)) for size, mine in alike.items())
+
+
 def half_cell(found: MeasuredBeam) -> float:
     """By how much later a vibrissa should begin whose first cell is rigid, and not by a spring."""
     first = found.joints[0].s
@@ -121,10 +134,7 @@ def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
 
 def first_stiffness(found: MeasuredBeam) -> float:
     """Of the first joint, such that the tip gives way as it is meant to."""
-    arms = joint_arms(found)
-    meant = np.array([joint.cell for joint in found.joints]) / smooth_rigidity(found)
-    wanted = found.length**3 / (3 * at_its_tip(found)) - meant[1:] @ arms[1:] ** 2
-    return float(arms[0] ** 2 / wanted)
+    return float(joint_arms(found)[0] ** 2 / flexibility(found, 0.0, found.joints[0].cell))
 
 
 def held(found: MeasuredBeam) -> tuple[Edit, ...]:
@@ -183,10 +193,10 @@ def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:
     moment = number(found.mass * found.length**2)
     inertial = f'<inertial pos="0 0 0" mass="{weight}" diaginertia="{moment} {moment} {moment}"/>'
     return (
-        Insert(f'<joint name="rail" type="slide" axis="{axis}" armature="{number(inertia)}"/>',
+        Insert(f'<joint name="vibrissa-rail" type="slide" axis="{axis}" armature="{number(inertia)}"/>',
                found.body),
         *(() if found.body_mass else (Insert(inertial, found.body),)),
-        Insert(f'<actuator><velocity name="motor" joint="rail" kv="{gain}"/></actuator>'),
+        Insert(f'<actuator><velocity name="vibrissa-motor" joint="vibrissa-rail" kv="{gain}"/></actuator>'),
     )  # fmt: skip
 
 

@@ -24,10 +24,10 @@ class Mover:
 
 
 def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
-    """What can move a body along the sweep."""
+    """What can move a body along the sweep: what is driven rather than a slide that is not."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    welded = None
+    welded, passive = None, None
     for body in holders(model, foot):
         if model.body_mocapid[body] >= 0:
             return Mover(mocap=body, joint=welded)
@@ -37,8 +37,11 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
             along = abs(float(data.xaxis[joint] @ left))
             if model.jnt_type[joint] == _SLIDE and along > _ALONG:
                 _refuse_other_drives(model, joint)
-                return Mover(joint=joint, actuator=_actuator_of(model, joint))
-    return None
+                found = Mover(joint=joint, actuator=_actuator_of(model, joint))
+                if found.actuator is not None:
+                    return found
+                passive = passive or found
+    return passive
 
 
 def slides(model: mujoco.MjModel, foot: int) -> Iterator[int]:

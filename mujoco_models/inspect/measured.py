@@ -67,6 +67,7 @@ class Geom:
     start: float  # arc lengths of its axis [length]
     end: float  # arc lengths of its axis [length]
     radius: float  # [length]
+    size: tuple[float, ...]  # MuJoCo's of a sphere, capsule or cylinder; of others empty
     # Whether it collides with an object that has MuJoCo's default contype and conaffinity.
     meets: bool
     weight: float  # the acceleration by a unit of force that MuJoCo takes; 0 if it cannot move
@@ -75,6 +76,11 @@ class Geom:
     time_constant: float
     friction: float  # coefficient; 0 if its contacts have no friction
     margin: float  # how far from an object its contacts already push, less their gap [length]
+
+    @property
+    def middle(self) -> float:
+        """Arc length of the middle of its axis [length]."""
+        return (self.start + self.end) / 2
 
 
 @dataclass(frozen=True, eq=False, repr=False)

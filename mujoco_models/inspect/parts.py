@@ -5,6 +5,7 @@ from fnmatch import fnmatchcase
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError, unknown
@@ -16,6 +17,7 @@ _FEWEST = 3  # joints of a vibrissa; what has fewer is an arm
 _BENDS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _SLENDER = (int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
 _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_NOTHING = 1e-300
 _GOES_ON = 0.8  # cosine; links of a vibrissa are bent by less
 _ALIGNED = 0.03  # lengths of a link; a geom of the foot that goes on as the vibrissa, or its arc
 
@@ -99,8 +101,7 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
             ("--torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
         )
     )
-    plugins = getattr(model, "body_plugin", np.full(model.nbody, -1))[list(chain)]
-    plugin = bool((plugins >= 0).any())
+    plugin = bool(_plugins(model)[chain[0]])
     return Parts(holders[-1], chain, tuple(geoms), force, torque, rod, plugin)
 
 
@@ -120,15 +121,17 @@ def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
 
 def _axis_of_box(model: mujoco.MjModel, geom: int) -> int:
     """Which of its axes is along the vibrissa: the last link may be thicker than it is long."""
-    body = model.geom_bodyid[geom]
+    body, turn = model.geom_bodyid[geom], _turn(model.geom_quat[geom])
     longest = int(np.argmax(model.geom_aabb[geom, 3:]))
-    way = model.body_pos[body]
-    if model.body_jntnum[body] == 0 or not np.linalg.norm(way) > 0:
+    if model.body_jntnum[body] == 0:
         return longest
-    # A link goes on as it comes from its parent, but for how it is bent.
-    turn = _turn(model.body_quat[body]) @ _turn(model.geom_quat[geom])
-    along = np.abs(way @ turn) / np.linalg.norm(way)
-    return int(np.argmax(along)) if along.max() > _GOES_ON else longest
+    # A link is ahead of its joint, or goes on as it comes from its parent, but for how it is bent.
+    ahead = model.geom_pos[geom] + turn @ model.geom_aabb[geom, :3] - model.jnt_pos[model.body_jntadr[body]]
+    for way in (ahead @ turn, model.body_pos[body] @ _turn(model.body_quat[body]) @ turn):
+        along = np.abs(way) / max(float(np.linalg.norm(way)), _NOTHING)
+        if along.max() > _GOES_ON:
+            return int(np.argmax(along))
+    return longest
 
 
 def _turn(quaternion: Floats) -> Floats:
@@ -149,18 +152,32 @@ def radius_of(model: mujoco.MjModel, geom: int) -> float:
     return float(np.sort(model.geom_aabb[geom, 3:])[:2].mean())
 
 
+def size_of(model: mujoco.MjModel, geom: int) -> tuple[float, ...]:
+    """A file's `size` of a sphere, capsule or cylinder; of others empty."""
+    kind = int(model.geom_type[geom])
+    count = 2 * (kind in _SLENDER) + (kind == _SPHERE)
+    return tuple(model.geom_size[geom, :count].tolist())
+
+
+def _plugins(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Which bodies a plugin bends."""
+    return np.asarray(getattr(model, "body_plugin", np.full(model.nbody, -1))) >= 0
+
+
 def _chains(model: mujoco.MjModel) -> list[Chain]:
     """Rows of bodies that bend, none part of a longer one."""
     driven = model.actuator_trnid[model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT, 0]
     bends = np.isin(model.jnt_type, _BENDS)
     bends[driven] = False
-    bending = {*model.jnt_bodyid[bends].tolist()}
+    others = model.jnt_bodyid[~np.isin(model.jnt_type, _BENDS)]  # what slides, too, is a hand
+    bending = {*model.jnt_bodyid[bends].tolist()} - {*others.tolist()}
+    plugin = _plugins(model)
     holder = model.body_weldid[model.body_parentid]  # what is fixed to a link is part of it
     inner = {*holder[[*bending]].tolist()}
     chains = []
     for body in sorted(bending - inner):
         row = [body]
-        while (parent := int(holder[row[-1]])) in bending:
+        while (parent := int(holder[row[-1]])) in bending and plugin[parent] == plugin[row[-1]]:
             row.append(parent)
         if len(row) >= _FEWEST:
             chains.append(tuple(reversed(row)))

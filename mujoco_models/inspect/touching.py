@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.inspect.measured import Geom
-from mujoco_models.inspect.parts import Parts, axis_of, radius_of
+from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
 
@@ -87,6 +87,7 @@ def _geom(
         start=start,
         end=end,
         radius=piece.radius,
+        size=size_of(model, piece.number) if piece.kind == "geom" else (),
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
         weight=weight,
         stiffness=stiffness,
