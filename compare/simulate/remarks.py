@@ -24,10 +24,10 @@ from compare.simulate.rigidity import (
 from compare.simulate.treatment import (
     HARD,
     at_clamp,
+    beginning_later,
     contacts,
     damped,
     evened,
-    beginning_later,
     first_stiffness,
     frictionless,
     half_cell,

@@ -192,12 +192,13 @@ def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:
     gain, weight = number(inertia / (0.01 * found.period)), number(found.mass)
     moment = number(found.mass * found.length**2)
     inertial = f'<inertial pos="0 0 0" mass="{weight}" diaginertia="{moment} {moment} {moment}"/>'
+    rail, slides = "vibrissa-rail", f'type="slide" axis="{axis}" armature="{number(inertia)}"'
+    motor = f'<velocity name="vibrissa-motor" joint="{rail}" kv="{gain}"/>'
     return (
-        Insert(f'<joint name="vibrissa-rail" type="slide" axis="{axis}" armature="{number(inertia)}"/>',
-               found.body),
+        Insert(f'<joint name="{rail}" {slides}/>', found.body),
         *(() if found.body_mass else (Insert(inertial, found.body),)),
-        Insert(f'<actuator><velocity name="vibrissa-motor" joint="vibrissa-rail" kv="{gain}"/></actuator>'),
-    )  # fmt: skip
+        Insert(f"<actuator>{motor}</actuator>"),
+    )
 
 
 def _text(numbers: Floats, unit: float = 1.0) -> str:

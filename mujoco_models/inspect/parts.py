@@ -126,7 +126,11 @@ def _axis_of_box(model: mujoco.MjModel, geom: int) -> int:
     if model.body_jntnum[body] == 0:
         return longest
     # A link is ahead of its joint, or goes on as it comes from its parent, but for how it is bent.
-    ahead = model.geom_pos[geom] + turn @ model.geom_aabb[geom, :3] - model.jnt_pos[model.body_jntadr[body]]
+    ahead = (
+        model.geom_pos[geom]
+        + turn @ model.geom_aabb[geom, :3]
+        - model.jnt_pos[model.body_jntadr[body]]
+    )
     for way in (ahead @ turn, model.body_pos[body] @ _turn(model.body_quat[body]) @ turn):
         along = np.abs(way) / max(float(np.linalg.norm(way)), _NOTHING)
         if along.max() > _GOES_ON:
@@ -142,7 +146,8 @@ def _turn(quaternion: Floats) -> Floats:
 
 def masses_of(model: mujoco.MjModel, chain: Chain) -> Floats:
     """Of its links, with all that is fixed to them."""
-    return np.bincount(model.body_weldid, model.body_mass, model.nbody)[list(chain)]
+    masses = np.bincount(model.body_weldid, model.body_mass, model.nbody)
+    return np.asarray(masses[list(chain)], dtype=float)
 
 
 def radius_of(model: mujoco.MjModel, geom: int) -> float:

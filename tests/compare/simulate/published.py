@@ -8,7 +8,7 @@ step, integrator and gravity, are as published; sensors are at the clamp. Time s
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, pairwise
 
 PLUGIN = 'plugin="mujoco.elasticity.cable"'
 
@@ -105,11 +105,12 @@ def spiral() -> Published:
         'range="-30.56 30.56" solimplimit="0.9 0.95 0.001" solreflimit="0.01 0.5"/>'
     )
     sizes = [0.90525**i for i in range(18)]
-    links = [
-        Link(0.0295615 * s, joint, f'<geom type="box" size="{0.0147807 * s:.6g} {0.0271576 * s:.6g} '
-             f'{0.0271576 * s:.6g}" pos="{0.0147807 * s:.6g} 0 0" density="1100"/>')
-        for s in sizes
-    ]  # fmt: skip
+    links = []
+    for s in sizes:
+        half, thick = 0.0147807 * s, 0.0271576 * s
+        size = f"{half:.6g} {thick:.6g} {thick:.6g}"
+        box = f'<geom type="box" size="{size}" pos="{half:.6g} 0 0" density="1100"/>'
+        links.append(Link(0.0295615 * s, joint, box))
     return chain(links, option='timestep="0.005" impratio="10" iterations="50"',
                  gravity="-9.81 0 0", inertia=1e5)  # fmt: skip
 
@@ -137,7 +138,7 @@ def rat() -> Published:
     h, links = length / 20, []
     radii = [base + (tip - base) * i / 20 for i in range(21)]
     masses = [math.pi * h / 3 * (a * a + a * b + b * b) * (1260 + 21.5 * (i + 1)) * 1e-3
-              for i, (a, b) in enumerate(zip(radii, radii[1:], strict=False))]  # fmt: skip
+              for i, (a, b) in enumerate(pairwise(radii))]  # fmt: skip
     beyond = [*accumulate(reversed(masses))][::-1]
     for i in range(1, 20):
         a, rest = radii[i], (20 - i) * h
