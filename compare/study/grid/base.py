@@ -1,6 +1,6 @@
 """The base case of a study file: what each run is a variation of, and what a key of it may be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import Any
@@ -132,8 +132,7 @@ class Base:
 
     def _overlaid(self, content: StudyFile) -> dict[str, Any]:
         """The base case's tables with the study's own over them."""
-        own: Mapping[str, dict[str, Any]] = content.model_dump(include=set(RUN_TABLES))
-        own = {name: table for name, table in own.items() if table}
+        own = {name: table for name, table in content.__pydantic_extra__.items() if table}
         case = content.study.case
         if case is None:
             return dict(own)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from compare.read.quantities import FileName, Table, validated
 from compare.read.space import SpaceFile
@@ -146,26 +146,25 @@ class StudyTable(Table):
     zip: list[list[str]] = Field(default_factory=list)
 
 
+_ALIKE = ("name", "whisk", "model", "tolerances", "uncertainty")  # in all runs, or in none
+RUN_TABLES = tuple(
+    name
+    for name in dict.fromkeys((*PlanarRun.model_fields, *SpatialRun.model_fields))
+    if name not in _ALIKE
+)
+"""Those of a run that a study may have, and vary."""
+
+
 class StudyFile(Table):
     """A whole study file; those of a run are checked as those of a case file are."""
 
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, dict[str, Any]] = Field(init=False)
     study: StudyTable = StudyTable()
     axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
     sample: Sample | None = None
-    beam: dict[str, Any] = Field(default_factory=dict)
-    support: dict[str, Any] = Field(default_factory=dict)
-    contact: dict[str, Any] = Field(default_factory=dict)
-    weight: dict[str, Any] = Field(default_factory=dict)
-    profile: dict[str, Any] = Field(default_factory=dict)
-    sweep: dict[str, Any] = Field(default_factory=dict)
-    mujoco: dict[str, Any] = Field(default_factory=dict)
-    motion: dict[str, Any] = Field(default_factory=dict)
-    engine: dict[str, Any] = Field(default_factory=dict)
-    body: dict[str, Any] = Field(default_factory=dict)
-    path: dict[str, Any] = Field(default_factory=dict)
-    noise: dict[str, Any] = Field(default_factory=dict)
-    reconstruction: dict[str, Any] = Field(default_factory=dict)
 
-
-RUN_TABLES = (*StudyFile.model_fields,)[3:]
-"""Those of a run."""
+    @classmethod
+    def keys(cls) -> list[str]:
+        """Those of a run, too."""
+        return [*super().keys(), *RUN_TABLES]
