@@ -244,7 +244,7 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
             kind = "fault"
         yield Remark(kind, "gravity", f"{strength:.3g} bends the vibrissa by {sag:.1e} L at the "
                      f"tip, and the force sensor reads {weight:.2g} EI/L^2 of it before anything "
-                     "touches; the theory has none",
+                     "touches: a weight of that over L. Switch it off, or state it as [weight]",
                      edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
 
 

@@ -175,8 +175,9 @@ def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -
             reached = turned + force * panel.turned(cos)
     change = np.abs(reached[:-1] - theta).max(axis=0)
     last = np.where(change > _LOST, np.nan, reached[-1])
-    bends = pull.at(panel.s, theta) if pull.heavy else force * cos
-    moment = here.m + panel.length * WEIGHTS.dot(bends)
+    bends = pull.at(panel.s, theta) if pull.heavy else cos
+    scale = panel.length if pull.heavy else panel.length * force
+    moment = here.m + scale * WEIGHTS.dot(bends)
     sin, size = np.sin(theta), np.abs(panel.length)
     if trail is not None:
         trail.append(
@@ -185,7 +186,7 @@ def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -
                 here.along + size * TO_NODES.dot(cos),
                 here.across + size * TO_NODES.dot(sin),
                 theta,
-                here.m + panel.length * TO_NODES.dot(bends),
+                here.m + scale * TO_NODES.dot(bends),
             )
         )
     first, final = _phases(panel, np.array([here.theta, last]), np.array([here.m, moment]), force)
