@@ -35,13 +35,6 @@ class Parts(NamedTuple):
     stations: int
     """How many all sweeps share."""
 
-    def line(self) -> str:
-        """All parts, for a terminal."""
-        return (
-            f"of {self.whole:.1e} rms: discretisation {self.discretisation:.1e}, softness "
-            f"{self.softness:.1e}, unexplained {self.unexplained:.1e} ({self.stations} stations)"
-        )
-
     def to_dict(self) -> dict[str, Any]:
         """What ``budget.json`` holds."""
         return self._asdict()
