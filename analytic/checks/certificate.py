@@ -70,7 +70,7 @@ def certify(readings: Readings) -> pd.DataFrame:
     couple = arm * pushed
 
     free = phase == "free"
-    touching = np.isfinite(arc_length) | (free & heavy)
+    touching = np.isfinite(arc_length) | (free & heavy & np.isfinite(moment))
     boundary = np.where(free, 0.0, np.nan)
     balance = np.where(free, np.abs(moment), np.nan)
     if touching.any():

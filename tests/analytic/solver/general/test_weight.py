@@ -1,5 +1,6 @@
 """A vibrissa that has a weight: readings, events, limits and checks by integration."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -202,3 +203,13 @@ def test_random_weights_against_an_integration(profile, size, direction, natural
     good = readings.table["status"].isin(["ok", "sticks"])
     assert not (readings.table["status"] == "diverged").any()
     assert certify(readings)[good].max(axis=None) < 1e-11
+
+
+def test_a_certificate_passes_over_stations_without_readings():
+    case = Case(profile=PROFILES["parabola(0.5,0.5)"], sweep=Sweep(8), weight=(1.24, -1.78))
+    readings = solve_sweep(case)
+    table, free = readings.table.copy(), readings.table["phase"] == "free"
+    table.loc[free, ["force_x", "force_y", "moment_z"]] = np.nan
+    found = certify(replace(readings, table=table))
+    assert found.loc[free, "residual_moment"].isna().all()
+    assert found[~free].max(axis=None) < 1e-11
