@@ -20,7 +20,7 @@ from analytic.problem.numbers import pair, within
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import FirstTouch, first_touch
-from analytic.problem.shown import Shown
+from analytic.problem.shown import Shown, new_figure
 from analytic.problem.support import (
     Support,
     beyond_the_paper,
@@ -445,10 +445,7 @@ class Case(Shown):
         """
         from analytic.problem.case_shown import draw
 
-        if ax is None:
-            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
-
-            ax = plt.figure(layout="constrained").subplots()
+        ax = new_figure().subplots() if ax is None else ax
         draw(self, ax)
         return ax
 

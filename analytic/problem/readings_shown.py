@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.problem.shown import with_unit
+from analytic.problem.shown import stacked, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,14 +53,10 @@ def as_html(readings: "SweepTable") -> str:
     return f"<pre>{escape(as_text(readings))}</pre>{rows}"
 
 
-def new_axes(figure: "Figure", readings: "SweepTable") -> "list[Axes]":
+def new_axes(readings: "SweepTable", figure: "Figure | None" = None) -> "list[Axes]":
     """Axes for what the clamp reads, one above the other."""
-    axes: Sequence[Axes] = figure.subplots(len(readings.panels), sharex=True)
-    axes[-1].set_xlabel(with_unit(readings.running, readings.beam))
-    for ax, label in zip(axes, readings.panels, strict=True):
-        ax.set_ylabel(with_unit(label, readings.beam))
-    figure.align_ylabels()
-    return list(axes)
+    labels = (with_unit(label, readings.beam) for label in readings.panels)
+    return stacked(labels, with_unit(readings.running, readings.beam), figure)
 
 
 def draw(readings: "SweepTable", axes: "Sequence[Axes]") -> None:

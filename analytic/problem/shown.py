@@ -1,7 +1,7 @@
 """What a value shows of itself: a line in a terminal, tiles and a picture in a notebook."""
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from analytic.problem.beam import Beam
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _TILES = "display:flex;flex-wrap:wrap;gap:6px;margin:4px 0"
@@ -51,6 +52,24 @@ class Shown:
         self._draw(figure)
         figure.savefig(file, dpi=_DPI)
         return f'<img src="data:image/png;base64,{b64encode(file.getvalue()).decode()}">'
+
+
+def new_figure() -> "Figure":
+    """One that a notebook shows by itself."""
+    from matplotlib import pyplot as plt  # a third of a second, and most draw nothing
+
+    return plt.figure(layout="constrained")
+
+
+def stacked(labels: Iterable[str], below: str, figure: "Figure | None" = None) -> "list[Axes]":
+    """Axes one above the other, in a new figure if none is given."""
+    figure, labels = figure or new_figure(), list(labels)
+    axes: list[Axes] = list(figure.subplots(len(labels), sharex=True))
+    for ax, label in zip(axes, labels, strict=True):
+        ax.set_ylabel(label)
+    axes[-1].set_xlabel(below)
+    figure.align_ylabels()
+    return axes
 
 
 def with_unit(name: str, beam: Beam) -> str:

@@ -128,17 +128,14 @@ class SweepTable(Shown):
         """
         from analytic.problem.readings_shown import draw, new_axes
 
-        if axes is None:
-            from matplotlib import pyplot as plt  # a third of a second, and most draw nothing
-
-            axes = new_axes(plt.figure(layout="constrained"), self)
+        axes = new_axes(self) if axes is None else axes
         draw(self, axes)
         return list(axes)
 
     def _draw(self, figure: "Figure") -> None:
         from analytic.problem.readings_shown import new_axes
 
-        self.plot(new_axes(figure, self))
+        self.plot(new_axes(self, figure))
 
     def _tiles(self) -> Mapping[str, object]:
         from analytic.problem.readings_shown import counts

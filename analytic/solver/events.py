@@ -21,7 +21,7 @@ from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.shown import Shown
+from analytic.problem.shown import Shown, stacked
 from analytic.problem.support import Support, check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
@@ -102,10 +102,7 @@ class Events(Shown):
         list of matplotlib.axes.Axes
             One a reading: ``force_x``, ``force_y``, ``moment_z``.
         """
-        if axes is None:
-            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
-
-            axes = self._new_axes(plt.figure(layout="constrained"))
+        axes = stacked(CLAMP_READINGS, "foot_x") if axes is None else axes
         for ax, name in zip(axes, CLAMP_READINGS, strict=True):
             for i, (event, at) in enumerate(self._there().items()):
                 said = event.replace("_", " ")
@@ -116,16 +113,8 @@ class Events(Shown):
     def _there(self) -> dict[str, Event]:
         return {name: at for name, at in vars(self).items() if at and math.isfinite(at.foot_x)}
 
-    @staticmethod
-    def _new_axes(figure: "Figure") -> "Sequence[Axes]":
-        axes: Sequence[Axes] = figure.subplots(len(CLAMP_READINGS), sharex=True)
-        for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-            ax.set_ylabel(name)
-        axes[-1].set_xlabel("foot_x")
-        return axes
-
     def _draw(self, figure: "Figure") -> None:
-        self.plot(self._new_axes(figure))
+        self.plot(stacked(CLAMP_READINGS, "foot_x", figure))
 
     def _tiles(self) -> dict[str, object]:
         return {name: f"{at.foot_x:.5g}" for name, at in self._there().items()}

@@ -209,16 +209,11 @@ class MeasuredBeam(Shown):
         }
 
     def _draw(self, figure: "Figure") -> None:
-        ax = figure.subplots()
-        if self.joints:
-            places = [joint.s for joint in self.joints]
-            ax.plot(places, [joint.flexural_rigidity for joint in self.joints], "o-", label="EI")
-            ax.axhline(self.tip_rigidity, color="grey", linestyle="--", label="as the tip feels it")
-            ax.set(xlabel="arc length from the clamp", ylabel="flexural rigidity")
-            ax.legend()
-        else:
-            ax.plot(self.bent[:, 0], self.loads, "o-")
-            ax.set(xlabel="how far the tip moves", ylabel="force on the tip")
+        ax, places = figure.subplots(), [joint.s for joint in self.joints]
+        ax.plot(places, [joint.flexural_rigidity for joint in self.joints], "o-", label="EI")
+        ax.axhline(self.tip_rigidity, color="grey", linestyle="--", label="as the tip feels it")
+        ax.set(xlabel="arc length from the clamp", ylabel="flexural rigidity")
+        ax.legend()
 
     def to_dict(self) -> dict[str, Any]:
         """All of it.

@@ -9,7 +9,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.case_shown import described
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import within
-from analytic.problem.shown import Shown
+from analytic.problem.shown import Shown, new_figure
 from analytic.problem.support import require_plain
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.polyhedron import Polyhedron
@@ -135,10 +135,7 @@ class SpatialCase(Shown):
         mpl_toolkits.mplot3d.Axes3D
             With equal scales, the case's y upwards.
         """
-        if ax is None:
-            from matplotlib import pyplot as plt  # slow to load, and most draw nothing
-
-            ax = plt.figure(layout="constrained").add_subplot(projection="3d")
+        ax = new_figure().add_subplot(projection="3d") if ax is None else ax
         feet = self.path.corners
         tips = feet + self.beam.length * self.path.clamp_tangent
         middle, reach = (feet + tips).mean(axis=0) / 2, 1.5 * self.beam.length
