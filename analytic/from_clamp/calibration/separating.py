@@ -21,7 +21,7 @@ _EXPANDED = 1.959964
 
 @dataclass(frozen=True)
 class Undistinguished:
-    """A direction along which unknowns change together, and what would tell how far.
+    """A direction along which unknowns change together, and what would show how far.
 
     Parameters
     ----------
