@@ -18,6 +18,7 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.first_touch import first_on_way
 from analytic.problem.numbers import pair, within
 from analytic.problem.poses import Pose, Poses, along_x
+from analytic.problem.provenance import recorded_contours
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import FirstTouch, first_touch
 from analytic.problem.shown import Shown, new_figure
@@ -63,6 +64,9 @@ class Case(Shown):
     weight : tuple of float
         That of the vibrissa along x and y, by length [force/length]: (0, -m g/L) if its clamp
         stands below it on a table.
+    others : tuple of Contour
+        Objects besides. `profile` may be a list of all, and becomes the one that the vibrissa at
+        rest comes to first.
 
     Raises
     ------
@@ -80,8 +84,11 @@ class Case(Shown):
     friction: float = field(default=0.0, kw_only=True)
     clamp_angle: float = field(default=0.0, kw_only=True)
     weight: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
+    others: tuple[Contour, ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
+        if self.others or isinstance(self.profile, list | tuple):
+            self._put_in_order()
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
             ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
@@ -112,6 +119,31 @@ class Case(Shown):
             allowed = f"{'more' if more else 'less'} than the start, {self._start:.6g}"
             remedy = f"the foot moves to the {self.sweep.direction} (sweep.direction)"
             raise InputError("sweep.stop", stop, allowed, remedy)
+
+    def _put_in_order(self) -> None:
+        """Make `profile` the object that is touched first, and `others` the rest."""
+        given: Any = self.profile
+        objects = (*(given if isinstance(given, list | tuple) else (given,)), *self.others)
+        for one in objects:
+            require("case.profile", one, Contour, "as [circle(0.2, (0.3, 0.4)), parabola(1, 0.5)]")
+        if not objects:
+            raise InputError("case.profile", "no object", "one or more", "give an object to touch")
+        alone = [replace(self, profile=one, others=()) for one in objects]
+        first, *others = sorted(alone, key=Case._distance)
+        object.__setattr__(self, "profile", first.profile)
+        object.__setattr__(self, "others", tuple(other.profile for other in others))
+
+    def _distance(self) -> float:
+        """How far along its way the unloaded vibrissa first touches; infinite if it does not."""
+        if isinstance(self.sweep, Sweep):
+            return self._way * self._first_contact
+        touch = (self if self.direction == "left" else self.mirrored()).touch
+        return math.inf if touch is None else -touch.p
+
+    @property
+    def alone(self) -> tuple["Case", ...]:
+        """The cases of the other objects, each without the rest."""
+        return tuple(replace(self, profile=other, others=()) for other in self.others)
 
     @property
     def support(self) -> Support:
@@ -227,8 +259,10 @@ class Case(Shown):
 
     @property
     def is_plain(self) -> bool:
-        """Whether the vibrissa is the paper's: straight, uniform, held upright, not rubbed."""
-        return isinstance(self.sweep, Sweep) and is_plain(self.beam, self.support)
+        """Whether vibrissa and object are the paper's: straight, uniform, upright, one contour."""
+        return (
+            not self.others and isinstance(self.sweep, Sweep) and is_plain(self.beam, self.support)
+        )
 
     def require_plain(self, who: str) -> None:
         """Refuse a case that is not the paper's vibrissa.
@@ -277,8 +311,30 @@ class Case(Shown):
         Raises
         ------
         InputError
-            If it does.
+            If it does, or if there are several objects.
         """
+        self.require_one_object(who)
+        self._require_line(who)
+
+    def require_one_object(self, who: str) -> None:
+        """Refuse a case with several objects.
+
+        Parameters
+        ----------
+        who : str
+            Who can take one only.
+
+        Raises
+        ------
+        InputError
+            If there are more.
+        """
+        if self.others:
+            allowed = f"1: {who} can take no more"
+            remedy = "solve it in closed form (exact), or sweep past one"
+            raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
+
+    def _require_line(self, who: str) -> None:
         if not isinstance(self.sweep, Sweep):
             what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
             allowed = f"a Sweep, with the foot along its line: {who} can do no other"
@@ -304,7 +360,7 @@ class Case(Shown):
         InputError
             If the clamp turns or leaves its line on its way.
         """
-        self.require_sweep("a sweep between other positions of the foot")
+        self._require_line("a sweep between other positions of the foot")
         number = self.sweep.stations if stations is None else stations
         ends = replace(self.sweep, stations=number, start=start, stop=stop)
         return replace(self, sweep=ends)
@@ -361,6 +417,8 @@ class Case(Shown):
             numbers = np.append(numbers, self.clamp_angle)
         if any(self.weight):
             numbers = np.append(numbers, self.weight)
+        for other in self.alone:
+            numbers = np.append(numbers, other.centreline.place(np.linspace(*other.reach, 67)))
         text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
         if beam.varies:
             given = asdict(beam)
@@ -377,14 +435,15 @@ class Case(Shown):
             ``case`` and ``profile`` by name, ``digest``, and ``contour``: two lists, xi and eta
             [length]; ``support``, if the clamp turns or leans or the object rubs:
             ``clamp_stiffness``, None if rigid, ``friction``, ``clamp_angle``, unless upright, and
-            ``weight_x`` and ``weight_y``, if it has any.
+            ``weight_x`` and ``weight_y``, if it has any; ``others``, if there are more objects:
+            the contour of each.
         """
-        xi, eta = self.outline()
+        lines = [[line.tolist() for line in one.outline()] for one in (self, *self.alone)]
         return {
             "case": self.name,
             "profile": self.profile.label,
             "digest": self.digest,
-            "contour": [xi.tolist(), eta.tolist()],
+            **recorded_contours(lines),
             **support_record(self.support),
         }
 
@@ -426,6 +485,7 @@ class Case(Shown):
             self,
             beam=self.beam.mirrored(),
             profile=self.profile.mirrored(),
+            others=tuple(other.mirrored() for other in self.others),
             sweep=sweep,
             **self.support.mirrored()._asdict(),
         )
@@ -491,6 +551,9 @@ class Case(Shown):
     def _stop(self) -> float:
         if self.sweep.stop is not None:
             return cast("float", self.sweep.stop)
+        if self.others:
+            alone = [replace(self, others=()), *self.alone]
+            return max((one._stop for one in alone), key=lambda stop: self._way * stop)
         if self._way > 0:
             mirrored = self.centreline.mirrored()
             return (_MARGIN - out_of_reach(mirrored, *contact_range(mirrored))) * self.beam.length

@@ -20,9 +20,10 @@ def described(beam: Beam) -> str:
 
 def draw(case: "Case", ax: "Axes") -> None:
     """Object, way and vibrissa, in the case's unit of length."""
-    xi, eta = case.outline()
-    ax.fill_between(xi, eta, eta.max(), color="#dddddd", linewidth=0)
-    ax.plot(xi, eta, color="#555555", linewidth=2.5, label=case.profile.label)
+    for one in (case, *case.alone):
+        xi, eta = one.outline()
+        ax.fill_between(xi, eta, eta.max(), color="#dddddd", linewidth=0)
+        ax.plot(xi, eta, color="#555555", linewidth=2.5, label=one.profile.label)
     feet, s = case.stations, np.linspace(0, 1, 33)
     ax.plot(feet.foot_x, feet.foot_y, color="#999999", linewidth=0.8)
     for station, said, colour in ((0, "start", "#0072b2"), (-1, "end", "#d55e00")):

@@ -1,6 +1,6 @@
 """What readings carry along besides their table, in the form that they can use."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analytic.problem.errors import InputError
@@ -16,8 +16,15 @@ def check_provenance(provenance: Mapping[str, Any]) -> None:
         if not fits or not all(_is_number(x) for x in value.values()):
             allowed = "numbers or null by name"
             raise InputError(f"provenance.{name}", f"{value!r}"[:80], allowed, "drop it")
-    contour = provenance.get("contour", [[], []])
-    floats("provenance.contour", contour, (2, None), "two lists of as many coordinates")
+    contour, others = provenance.get("contour", [[], []]), provenance.get("others", [])
+    for one in (contour, *(others if isinstance(others, list) else [others])):
+        floats("provenance.contour", one, (2, None), "two lists of as many coordinates")
+
+
+def recorded_contours(contours: Sequence[Any]) -> dict[str, Any]:
+    """What the provenance says of the contours of objects, the first one and others."""
+    named = {"contour": contours[0]} if contours else {}
+    return named | ({"others": [*contours[1:]]} if contours[1:] else {})
 
 
 def _is_number(value: object) -> bool:

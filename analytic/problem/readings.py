@@ -15,7 +15,7 @@ from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
 from analytic.problem.places import Place, row_number
-from analytic.problem.provenance import check_provenance
+from analytic.problem.provenance import check_provenance, recorded_contours
 from analytic.problem.support import (
     Support,
     beyond_the_paper,
@@ -272,11 +272,18 @@ class Readings(SweepTable):
             provenance["events"] = {n: None if x is None else way * x for n, x in events.items()}
         if "support" in provenance:
             provenance |= support_record(self.support.mirrored())
-        if "contour" in provenance:
-            xi, eta = provenance["contour"]
-            provenance["contour"] = [[-x for x in reversed(xi)], list(reversed(eta))]
+        turned = [[(-xi[::-1]).tolist(), eta[::-1].tolist()] for xi, eta in self.contours]
+        provenance |= recorded_contours(turned)
         table, beam = mirrored_table(self.table), self.beam.mirrored()
         return replace(self, table=table, beam=beam, provenance=provenance)
+
+    @property
+    def contours(self) -> "list[Floats]":
+        """The contours of the objects that the source recorded, each of shape (2, n) [length]."""
+        first = [self.provenance["contour"]] if "contour" in self.provenance else []
+        return [
+            np.asarray(one, dtype=float) for one in (*first, *self.provenance.get("others", []))
+        ]
 
     @staticmethod
     def read_table(path: str | Path) -> "pd.DataFrame":

@@ -260,7 +260,7 @@ def _general_events(
     for name, i in {**path.events(), **second_contacts(paths)}.items():
         if i is None:
             continue
-        state, clear = clear_state(paths, i, ())
+        state, clear = clear_state(paths, i, (contour,))
         columns = to_columns(state, units)
         # First contact is of two rigid bodies: there is no force whose direction could be checked.
         if i > 0:

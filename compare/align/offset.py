@@ -9,11 +9,13 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.provenance import recorded_contours
 from compare.align.stations import interpolant
 from compare.sense.noise import scales
 from compare.sense.phases import Classification
 from compare.sense.transitions import locate_transitions
 
+_ALONG = ("foot_x", "contact_x", "second_contact_x")
 _FEWEST = 8  # stations that a fit is worth something with
 _FOLD = 2  # last stations before a snap-off: the readings' slope grows without bound there
 _SCAN = 4  # trial offsets a station of the reference
@@ -72,14 +74,13 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
 def without_offset(readings: Readings, offset: float) -> Readings:
     """The readings with `offset` subtracted from every position along x, events and contour too."""
     table = readings.table
-    moved = {name: table[name] - offset for name in ("foot_x", "contact_x") if name in table}
+    moved = {name: table[name] - offset for name in _ALONG if name in table}
     provenance: dict[str, Any] = dict(readings.provenance)
     if "events" in provenance:
         events = provenance["events"]
         provenance["events"] = {n: None if x is None else x - offset for n, x in events.items()}
-    if "contour" in provenance:
-        xi, eta = provenance["contour"]
-        provenance["contour"] = [[x - offset for x in xi], eta]
+    lines = [[(xi - offset).tolist(), eta.tolist()] for xi, eta in readings.contours]
+    provenance |= recorded_contours(lines)
     return replace(readings, table=table.assign(**moved), provenance=provenance)
 
 

@@ -175,5 +175,7 @@ def _origin(readings: Sweep) -> dict[str, Any]:
         "source": readings.source,
         "beam": asdict(readings.beam),
         "stations": len(readings.table),
-        "provenance": {k: v for k, v in readings.provenance.items() if k != "contour"},
+        "provenance": {
+            k: v for k, v in readings.provenance.items() if k not in ("contour", "others")
+        },
     }

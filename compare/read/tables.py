@@ -1,6 +1,7 @@
 """The tables of a case file: what each of them may hold, and what is built from it."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -182,8 +183,8 @@ class CaseFile(Table):
         check_support(found.support, found.beam)
         return found
 
-    def case(self, folder: Path, name: str) -> Case:
-        """The whole problem."""
+    def case(self, folder: Path, name: str, others: Sequence["CaseFile"] = ()) -> Case:
+        """The whole problem; with the objects of other files that are like this one."""
         beam, contour, held = self.physics(folder)
         if self.whisk is not None and "sweep" in self.model_fields_set:
             raise InputError("[sweep] beside [whisk]", "both", "one of them", "leave one out")
@@ -193,6 +194,7 @@ class CaseFile(Table):
                 contour,
                 self.sweep.build() if self.whisk is None else self.whisk.build(),
                 self.name or name,
+                others=tuple(other.profile.build(folder) for other in others),
                 **held._asdict(),
             )
         except InputError as error:
@@ -232,9 +234,13 @@ class BeamFile(Table):
 
 def job_in_the_plane(file: TomlFile) -> Job:
     """The job that a case file states."""
-    found = validated(CaseFile, file.tables, file.place)
+    given = file.tables.get("profile")
+    each = [file.tables]
+    if isinstance(given, list) and given:  # several objects, [[profile]]
+        each = [{**file.tables, "profile": one} for one in given]
+    found, *others = (validated(CaseFile, tables, file.place) for tables in each)
     limits = tolerances_of(found.tolerances, file.place, Tolerances)
-    case = found.case(file.path.parent, found.name or name_of(file.path))
+    case = found.case(file.path.parent, found.name or name_of(file.path), others)
     moved, own = found.motion, found.model
     motion = None if moved is None else moved.build(case.beam)
     if own is not None:

@@ -12,7 +12,8 @@ from compare.show.document import Block, Document, Table, Text, Tile, Verdict, s
 from compare.show.numbers import place, quantity, sentence, short, words
 from compare.show.style import ALONG, PHASE_LETTERS
 
-_BULKY = ("contour", "events", "joints", "path")  # of a source's provenance; they are drawn instead
+# Of a source's provenance; they are drawn instead.
+_BULKY = ("contour", "others", "events", "joints", "path")
 _BEAM = ("length", "flexural_rigidity", "radius")
 _LONGEST = 200  # characters of a setting
 _OF_LARGEST = "of the reading's largest magnitude"

@@ -19,6 +19,7 @@ def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam,
     require_radius(case.radius, engine)
     if engine != "MuJoCo":
         require_weightless(engine, case.support)
+    case.require_one_object(engine)
     for who, tried in (
         ("a cable", settings.beam == "cable"),
         ("out of the plane", not settings.planar),

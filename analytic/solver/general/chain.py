@@ -48,13 +48,20 @@ def joined(paths: Sequence[Path]) -> Path:
     return paths[-1]._replace(z=np.concatenate(z))
 
 
-def clear_state(paths: Sequence[Path], i: int, others: Sequence[Contour]) -> tuple[States, bool]:
+def others_than(contour: Contour | Pair, objects: Sequence[Contour]) -> list[Contour]:
+    """The objects that are not the one which is touched, or the outer one of two."""
+    touched = contour if isinstance(contour, Contour) else contour.outer
+    return [one for one in objects if one is not touched]
+
+
+def clear_state(paths: Sequence[Path], i: int, objects: Sequence[Contour]) -> tuple[States, bool]:
     """The state at one of the points of all paths, and whether it touches nothing else."""
     for path in paths:
         if i < len(path.p):
             break
         i -= len(path.p)
     found = states_at(path.contour, path.z[i : i + 1, :-1], path.vibrissa)
+    others = others_than(path.contour, objects)
     return found, bool(is_clear(path.contour, found, others)[0])
 
 
@@ -83,7 +90,7 @@ def _touched(
     vibrissa, contour = path.vibrissa, path.contour
     if vibrissa.rod is not None or not isinstance(contour, Contour):
         return None
-    others = [other for other in objects if other is not contour]
+    others = others_than(contour, objects)
     few = states_at(contour, path.z[:, :-1], vibrissa)
     if not others and bends_one_way(few).all():
         return None
@@ -157,7 +164,7 @@ def _left_alone(objects: Sequence[Contour], path: Path, poses: Poses) -> Path | 
         return None
     curve = _curve(contour, vibrissa, poses)
     here = curve.onward(z)
-    others = [other for other in objects if other is not contour]
+    others = others_than(contour, objects)
     for start in () if here is None else (here, turned_round(here)):
         ahead = curve.advance(None, start, _AHEAD)
         if ahead:

@@ -8,9 +8,16 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
+from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Pose, Poses
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
-from analytic.solver.general.chain import clear_state, joined, second_contacts, with_second_contacts
+from analytic.solver.general.chain import (
+    clear_state,
+    joined,
+    others_than,
+    second_contacts,
+    with_second_contacts,
+)
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.path import EVENTS, Path, follow, located
 from analytic.solver.general.states import Vibrissa, rates_at, states_at
@@ -41,13 +48,21 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         none = np.zeros(len(p), dtype=bool)
         return Solved(columns, dict.fromkeys(EVENTS), none, np.empty((0, 3)))
     first = follow(contour, vibrissa, case.touch, case.reach, poses)
-    paths = with_second_contacts((contour,), first, poses)
+    alone = case.alone
+    objects = contour, *(other.centreline for other in alone)
+    paths = with_second_contacts(objects, first, poses)
+    for other, line in zip(alone, objects[1:], strict=True):
+        # Let go by what was before, the vibrissa comes to the next object.
+        if paths[-1].complete and other.touch and other.touch.p < min(q.p.min() for q in paths):
+            onward = follow(line, vibrissa, other.touch, other.reach, poses)
+            paths += with_second_contacts(objects, onward, poses)
     holder = _holders(paths, p)
     held = holder >= 0
     past = (p < first.p[0]) & ~held
     lost = past & (not paths[-1].complete)
     beyond = Pose(*(values[past] for values in pose))
-    lost[past] |= ~is_rest_clear(contour, vibrissa, beyond)
+    for one in objects:
+        lost[past] |= ~is_rest_clear(one, vibrissa, beyond)
 
     unknown = len(paths) == 1 and not first.complete
     columns = without(columns, lost, "diverged" if unknown else "touches again")
@@ -66,13 +81,14 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         solved = to_columns(touching, Units.of(beam))
         sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(path, z, poses, p[here])
         solved["status"][sticks] = STATUS_NUMBER["sticks"]
-        solved = without(solved, ~is_clear(path.contour, touching), "touches again")
+        clear = is_clear(path.contour, touching, others_than(path.contour, objects))
+        solved = without(solved, ~clear, "touches again")
         words = {"phase": solved.pop("phase"), "status": solved.pop("status")}
         for name in solved.keys() - {"foot_x"}:
             columns[name][here] = np.where(found, solved[name], np.nan)
         columns["phase"][here] = words["phase"]
         columns["status"][here] = np.where(found, words["status"], STATUS_NUMBER["diverged"])
-    return Solved(columns, _events(paths), held | lost, places[held | lost])
+    return Solved(columns, _events(paths, objects), held | lost, places[held | lost])
 
 
 def _holders(paths: Sequence[Path], p: Floats) -> Integers:
@@ -85,14 +101,14 @@ def _holders(paths: Sequence[Path], p: Floats) -> Integers:
     return holder
 
 
-def _events(paths: Sequence[Path]) -> dict[str, float | None]:
+def _events(paths: Sequence[Path], objects: Sequence[Contour]) -> dict[str, float | None]:
     """Where on the way what happens happens."""
     path = joined(paths)
     points = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
     del points["contact_length_minimum"]
     for name in ("phase_b_start", "phase_b_end", "back_start", "back_end"):
         i = points[name]
-        if i is not None and not clear_state(paths, i, ())[1]:
+        if i is not None and not clear_state(paths, i, objects)[1]:
             points[name] = None
     return located(points | second_contacts(paths), path.p)
 

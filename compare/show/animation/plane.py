@@ -205,12 +205,13 @@ class _Curve:
 
 
 def _outline(readings: Readings) -> Floats:
-    """Vertices of the body, shape (n, 2) [L]; none if the source did not record its contour."""
-    if "contour" not in readings.provenance:
-        return np.full((1, 2), np.nan)
-    xi, eta = (np.asarray(c) / readings.beam.length for c in readings.provenance["contour"])
-    top = eta.max()
-    return np.column_stack([[xi[0], *xi, xi[-1]], [top, *eta, top]])
+    """Vertices of the bodies, shape (n, 2) [L], NaN between; none if no contour is recorded."""
+    found = []
+    for xi, eta in (contour / readings.beam.length for contour in readings.contours):
+        top = eta.max()
+        body = np.column_stack([[xi[0], *xi, xi[-1]], [top, *eta, top]])
+        found += [np.full((1, 2), np.nan), body]
+    return np.concatenate(found[1:] or [np.full((1, 2), np.nan)])
 
 
 def _padded(values: Iterable[Floats | list[float]], share: float) -> tuple[float, float]:

@@ -77,8 +77,7 @@ def reconstruction(
     ax = figure.subplots()
     _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str)[: len(readings.table)])
     scale = readings.beam.length
-    if "contour" in readings.provenance:
-        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+    for xi, eta in (contour / scale for contour in readings.contours):
         ax.plot(xi, eta, color=style.FAINT, linewidth=3, label="object", zorder=0)
     there = np.isfinite(found["contact_x"].to_numpy())
     if "contact_arc_length" in found:  # not every method knows it
@@ -148,8 +147,7 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
 
 def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
     scale = readings.beam.length
-    if "contour" in readings.provenance:
-        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+    for xi, eta in (contour / scale for contour in readings.contours):
         ax.fill_between(xi, eta, eta.max(), color=style.BODY, linewidth=0, zorder=0)
         ax.plot(xi, eta, **_OBJECT, zorder=1)
     found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]

@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from analytic import (
     Beam,
     Case,
+    InputError,
     Readings,
     Sweep,
     catenary,
     certify,
+    circle,
     find_events,
     polygon,
     solve_sweep,
@@ -153,3 +155,55 @@ def test_the_shape_that_is_drawn_goes_through_both_contacts(friction):
         kappa = curvatures(found, x, y)[two]
         assert np.abs(kappa[:, 64] - kappa[:, 65]).max() < 0.1
         np.testing.assert_allclose(np.abs(kappa[:, 128:]), 0.5, atol=1e-9)
+
+
+POSTS = [circle(0.05, (0.0, 0.5)), circle(0.05, (-0.3, 0.25))]
+CEILING = [circle(0.05, (0.3, 0.35)), catenary(0.5, -0.3)]
+
+
+@pytest.mark.parametrize("objects", [POSTS, CEILING], ids=["two posts", "a post below a wall"])
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+def test_a_straight_vibrissa_touches_two_objects(objects, friction):
+    case = Case(Beam(radius=0.002), objects, Sweep(120), friction=friction)
+    found = solve_sweep(case, certified=True)
+    two = found.table["second_contact_x"].notna()
+    assert two.sum() >= 4 and (found.table["status"][two] == "ok").all()
+    checked = found.table[found.table["status"].isin(["ok", "sticks"])]
+    assert checked[["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
+    # The order in which they are given, and the side that they are seen from, do not matter.
+    same = solve_sweep(replace(case, profile=objects[::-1], others=()))
+    np.testing.assert_array_equal(same.values("force_y"), found.values("force_y"))
+    mirrored = solve_sweep(case.mirrored())
+    np.testing.assert_array_equal(mirrored.values("force_y"), found.values("force_y"))
+    events = found.provenance["events"]
+    assert events["second_contact_start"] > events["second_contact_end"]
+
+
+def test_the_second_post_is_left_with_the_vibrissa_alone():
+    """Until the first one is gone it is held by both; then it is a sweep past the second alone."""
+    both = solve_sweep(Case(Beam(radius=0.002), POSTS, Sweep(120)))
+    foot_x = both.values("foot_x")
+    start = solve_sweep(Case(Beam(radius=0.002), POSTS[1], Sweep(2))).values("foot_x")[0]
+    alone = at_feet(Case(Beam(radius=0.002), POSTS[1]), foot_x)
+    after = (foot_x < both.provenance["events"]["second_contact_end"]) & (foot_x < start)
+    assert after.sum() > 20
+    np.testing.assert_allclose(both.values("force_y")[after], alone["force_y"][after], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("objects", "said"),
+    [
+        ([], "case.profile"),
+        ([POSTS[0], 3], "case.profile"),
+        ([POSTS[0], circle(0.1, (0, -0.2))], "above the foot line"),
+        ([POSTS[0], circle(0.1, (0, 1.2))], "below 1 L"),
+    ],
+)
+def test_objects_that_cannot_be(objects, said):
+    with pytest.raises(InputError, match=said):
+        Case(profile=objects)
+
+
+def test_who_takes_one_object_says_so():
+    with pytest.raises(InputError, match="number of objects = 2"):
+        Case(profile=POSTS).require_sweep("this")
