@@ -56,8 +56,9 @@ def simulate_sweep(
         ``extension``, by how much the beam is too long, over its length.
         ``provenance["events"]["snap_off"]`` is where the simulation let go, and
         ``provenance["unsettled"]`` counts the stations that are unsettled, by reason. A vibrissa
-        that is curved at rest may come to touch in two places: ``status`` is ``"touches again"``
-        then, and the clamp's readings are those of both contacts.
+        that is curved at rest may come to touch in two places: the columns ``second_contact_x`` and
+        its like are then of the outer one, as far as links can show two. Where it touches in more,
+        ``status`` is ``"touches again"``, and the clamp's readings are those of all contacts.
 
         If the settings let the beam leave the plane of the sweep, there are also the columns
         ``out_of_plane``, the largest distance of any of its points from the plane, and

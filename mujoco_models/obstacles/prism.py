@@ -29,6 +29,7 @@ _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices
 _FINEST = 1e-12  # L
 _EITHER_SIDE = 2  # facets; the nearest one is found to within the next one
 _FEET = 8  # two are usual, five at the tip of a needle
+_PLACES = 33  # of a vibrissa, where its curvature is looked at
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -45,8 +46,10 @@ class Prism(Faceted):
         radius: float,
         corner_radius: float,
         ends: tuple[bool, bool] = (False, False),
+        apart: float = 0.0,
     ) -> None:
         super().__init__(vertices, slopes)
+        self._apart = apart  # how far apart two contacts may be that a window has to have [L]
         self._exact, self._corner_radius = exact, corner_radius
         self._radius, self._ends = radius, ends
 
@@ -70,7 +73,12 @@ class Prism(Faceted):
         # A smooth contour that ends upright has no corner there, though its facets have.
         sharp = ~cut & (exact | (np.pi / 2 - np.abs(ends.alpha) > SHARP))
         left, right = sharp.tolist()
-        return cls(vertices, touchable(case), exact, case.radius, corner_radius, (left, right))
+        # A vibrissa that is curved towards the object may touch it in two places.
+        curved = case.beam.curvature_at(np.linspace(0, case.beam.length, _PLACES)).max() > 0
+        apart = 1.0 if curved else 0.0
+        return cls(
+            vertices, touchable(case), exact, case.radius, corner_radius, (left, right), apart
+        )
 
     @property
     def label(self) -> str:
@@ -239,6 +247,7 @@ class Prism(Faceted):
         s, number = self._arc_length, np.arange(len(self.vertices))
         with np.errstate(divide="ignore"):
             span = np.minimum(_SPAN * self._radius, _TURN / self._curvature)
+        span = np.maximum(span, self._apart)
         ahead, behind = np.searchsorted(s, s + span) - number, number - np.searchsorted(s, s - span)
         return np.asarray(np.maximum(_FINE, np.maximum(ahead, behind)))
 

@@ -13,11 +13,13 @@ from analytic import (
     Case,
     InputError,
     Sweep,
+    circle,
     named_case,
     parabola,
     polygon,
     solve_sweep,
 )
+from analytic.checks.of_two import touches_twice
 from mujoco_models import Settings, available_beams, simulate_sweep
 
 # Ends of a comparison: next to the snap-off the readings grow without bound, and are left out as
@@ -85,12 +87,13 @@ TRIPLES = [
 def test_named_cases(beam, name, variant):
     case = case_of(name, **VARIANTS[variant], stations=60)
     exact = solve_sweep(case)
+    # Where it touches twice there is a test of its own.
+    status = exact.table["status"].mask(touches_twice(exact.table), "touches again")
+    exact = replace(exact, table=exact.table.assign(status=status))
     # A cone's snap-off is a flat fold next to its soft tip. The rod's was off by up to 2.1e-3 L at
     # N = 40, 4.7e-4 at 80 and 2.1e-4 at 160, the chain's by 2.4e-4, 1.6e-4 and 1.6e-4.
     early = 2.5e-3 if (beam, variant) == ("rod", "cone") else 5e-4
     for segments, limit, snap_limit in ((40, 2e-3, early), (80, 5e-4, 5e-4)):
-        if segments == 80 and variant == "curved to the left" and name == "catenary":
-            continue  # most of its time goes into states that touch twice
         simulated = simulate_sweep(case, Settings(beam=beam, segments=segments))
         assert largest_rms(exact, simulated) < limit
         alike = exact.table["phase"] == simulated.table["phase"]
@@ -101,17 +104,27 @@ def test_named_cases(beam, name, variant):
 
 
 @pytest.mark.slow
-def test_a_vibrissa_curved_towards_the_object_touches_it_twice():
-    """The clamp reads both contacts; both models say where each of them is."""
-    case = Case(Beam(natural_curvature=0.9), parabola(0.25, 0.4), Sweep(40))
-    exact, simulated = solve_sweep(case), simulate_sweep(case, Settings(segments=40))
-    assert (exact.table["status"] == "ok").all() and (simulated.table["status"] == "ok").all()
-    assert largest_rms(exact, simulated) < 1e-3
-    both = exact.table["second_contact_x"].notna()
-    assert both.sum() > 4 and (simulated.table["second_contact_x"].notna() == both).all()
-    for column, within in (("contact_x", 2e-2), ("second_contact_x", 1e-3)):
-        apart = exact.values(column)[both] - simulated.values(column)[both]
-        assert np.abs(apart).max() < within
+@pytest.mark.parametrize(
+    ("profile", "natural"),
+    [
+        (named_case("catenary").profile, 0.5),
+        (circle(1.0, lowest=(0, 0.4)), 1.2),
+        (parabola(0.25, 0.4), 0.9),
+    ],
+)
+def test_a_vibrissa_curved_towards_the_object_touches_it_twice(profile, natural):
+    """Past catenary(0.5, -0.8) of curvature 0.8 it is 2.1e-3 and 7.3e-4, of the inner contact."""
+    case = Case(Beam(natural_curvature=natural), profile, Sweep(40))
+    exact = solve_sweep(case)
+    for segments, limit in ((40, 2e-3), (80, 5e-4)):
+        simulated = simulate_sweep(case, Settings(segments=segments))
+        assert (simulated.table["status"] == "ok").all() and (exact.table["status"] == "ok").all()
+        assert largest_rms(exact, simulated) < limit
+        assert abs(exact.snap_off - simulated.snap_off) < 1e-3
+        both = exact.table["second_contact_x"].notna()
+        assert both.sum() > 4 and (simulated.table["second_contact_x"].notna() == both).all()
+        apart = (exact.values("second_contact_x") - simulated.values("second_contact_x"))[both]
+        assert np.abs(apart).max() < 1e-3
 
 
 def test_a_vibrissa_that_lies_down_on_its_other_side():
