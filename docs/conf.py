@@ -10,7 +10,7 @@ NAV = {
     "Start": "docs/tutorial docs/glossary docs/gallery/README results/README",
     "Closed form": (
         "analytic/README analytic/case-file analytic/reconstruct analytic/methods "
-        "analytic/real-vibrissa analytic/there-and-back analytic/who-does-not-know "
+        "analytic/real-vibrissa analytic/two-contacts analytic/there-and-back analytic/who-does-not-know "
         "analytic/calibrate analytic/out-of-plane"
     ),
     "In space": (
