@@ -10,8 +10,8 @@ NAV = {
     "Start": "docs/tutorial docs/glossary docs/gallery/README results/README",
     "Closed form": (
         "analytic/README analytic/case-file analytic/reconstruct analytic/methods "
-        "analytic/real-vibrissa analytic/two-contacts analytic/there-and-back analytic/who-does-not-know "
-        "analytic/calibrate analytic/out-of-plane"
+        "analytic/real-vibrissa analytic/two-contacts analytic/there-and-back "
+        "analytic/who-does-not-know analytic/calibrate analytic/out-of-plane"
     ),
     "In space": (
         "analytic/space analytic/space-mujoco analytic/space-friction analytic/space-compare"
