@@ -112,8 +112,10 @@ def _parts() -> Iterator[tuple[str, pd.DataFrame]]:
         yield "whisking", _labelled(table, {"case": case, "station": range(len(table))})
     for case, body in _BODIES.items():
         path = FootPath([[1.3, 0.3], [-0.2, 0.1]], tangent=(0.1, 1, 0.05), stations=_STATIONS)
-        table = solve_space(SpatialCase(_THIN, body=body, path=path)).table
-        yield "space", _labelled(table, {"case": case, "station": range(len(table))})
+        for kind, friction in (("space", 0.0), ("space-friction", 0.3)):
+            swept = SpatialCase(_THIN, body=body, path=path, friction=friction)
+            table = solve_space(swept).table
+            yield kind, _labelled(table, {"case": case, "station": range(len(table))})
 
 
 def _labelled(table: pd.DataFrame, labels: dict[str, Any]) -> pd.DataFrame:

@@ -13,7 +13,10 @@ from docs.figures.reference_tables import write_tables
 
 HERE = Path(__file__).parents[2] / "docs" / "examples" / "reference"
 TABLES = HERE / "tables"
-NAMES = ("contact", "friction", "sweep", "event", "curved", "leaning", "whisking", "space")
+NAMES = (
+    "contact", "friction", "sweep", "event", "curved", "leaning", "whisking", "space",
+    "space-friction",
+)  # fmt: skip
 PLANTED = 100
 FOUND = 95  # at least
 
