@@ -120,11 +120,7 @@ class Panel(NamedTuple):
     by: Floats  # weights of the state's vector: what grows along the panel
     reach: float
     states: list[Sliding]  # at `POINTS`
-
-    @property
-    def vectors(self) -> Floats:
-        """Of the states."""
-        return np.array([state.vector for state in self.states])
+    vectors: Floats  # of these
 
     @property
     def coarse(self) -> float:
@@ -193,7 +189,9 @@ def panel(
             for one, step in both
         ]
         if size <= _EXACT or (size <= _ROUNDING and size > last / 4):
-            return Panel(scene, law, by, reach, [start, *states])
+            found = [start, *states]
+            vectors = np.array([state.vector for state in found])
+            return Panel(scene, law, by, reach, found, vectors)
     return None
 
 
