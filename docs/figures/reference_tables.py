@@ -113,8 +113,8 @@ def _parts() -> Iterator[tuple[str, pd.DataFrame]]:
     for case, body in _BODIES.items():
         path = FootPath([[1.3, 0.3], [-0.2, 0.1]], tangent=(0.1, 1, 0.05), stations=_STATIONS)
         for kind, friction in (("space", 0.0), ("space-friction", 0.3)):
-            swept = SpatialCase(_THIN, body=body, path=path, friction=friction)
-            table = solve_space(swept).table
+            oblique = SpatialCase(_THIN, body=body, path=path, friction=friction)
+            table = solve_space(oblique).table
             yield kind, _labelled(table, {"case": case, "station": range(len(table))})
 
 
