@@ -30,7 +30,8 @@ NAV = {
     ),
     "Compare": (
         "compare/README compare/files compare/gates compare/validation compare/budget "
-        "compare/study/README docs/examples/rig/README tests/examples/README"
+        "compare/study/README docs/examples/rig/README docs/examples/measured/README "
+        "tests/examples/README"
     ),
     "Trust": ("compare/verify docs/examples/reference/README tests/data/README tests/bench/README"),
     "Reference": "docs/api CONTRIBUTING docs/release/README CHANGELOG",

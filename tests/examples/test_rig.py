@@ -78,7 +78,7 @@ def test_the_commands_of_the_page(folder):
     ]
     assert len(commands) == 4
     done = [vibrissa(*command.split()[1:], cwd=folder) for command in commands]
-    assert [one.returncode for one in done] == [0, 1, 0, 0], [one.stderr for one in done]
+    assert [one.returncode for one in done] == [0, 1, 0, 1], [one.stderr for one in done]
     found = json.loads((folder / "passes" / "passes.json").read_text())
     (repeated,) = found["repeats"]
     late = np.array([name.endswith("-2") for name in repeated["passes"]])
@@ -95,6 +95,12 @@ def test_the_commands_of_the_page(folder):
     assert rigidity == pytest.approx(2e-6, rel=5e-3)
     assert calibrated["passes"]["degrees"] == 6
     assert "not resolved" in done[2].stdout
+    fitted = json.loads((folder / "contour" / "object.json").read_text())
+    assert fitted["family"] == "circle"
+    known = {"radius": 0.04, "centre_x": MADE["LAG"] / 2, "centre_y": 0.06}
+    for name, true in known.items():
+        assert fitted["found"][name]["value"] == pytest.approx(true, abs=1e-5)
+    assert fitted["probability"] < 0.01
     points = pd.read_csv(folder / "contour" / "points.csv")
     x, y = points["contact_x"], points["contact_y"]
     off = np.abs(np.hypot(x, y - 0.06) - 0.04).dropna()
