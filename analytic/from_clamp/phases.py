@@ -127,6 +127,32 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     )
 
 
+def beyond_one_contact(readings: Readings, noise: Mapping[str, float] | None = None) -> Floats:
+    """How badly one contact explains each station: above 4, it touches in two places.
+
+    One contact is at the tip, or tangential: force and moment then meet one of two conditions. Of
+    two contacts they meet neither, by 1e-3 to 1e-2 if the vibrissa is curved towards the object.
+
+    Parameters
+    ----------
+    readings : Readings
+        Only the four sensed columns are used.
+    noise : mapping, optional
+        As of `analytic.reconstruct`.
+
+    Returns
+    -------
+    array, shape (stations,)
+        What the better one of both conditions misses, in standard deviations of what the noise
+        makes of it; NaN where no force acts.
+    """
+    judged = judge_phases(readings, noise)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        by_slope = np.abs(judged.criterion) / judged.criterion_tolerance
+        by_length = np.abs(judged.shortfall) / judged.shortfall_tolerance
+    return np.where(judged.shortfall == 0, 0.0, np.fmin(by_slope, by_length))
+
+
 def _shortfall(arc_length: Floats) -> Floats:
     """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
     short = np.where(arc_length >= 0, 1 - arc_length, np.nan)

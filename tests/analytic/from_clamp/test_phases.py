@@ -8,14 +8,18 @@ import pytest
 from analytic import (
     CASE_NAMES,
     CLAMP_READINGS,
+    Beam,
+    Case,
     InputError,
     Sweep,
+    catenary,
     named_case,
     reconstruct,
     relative_noise,
     solve_sweep,
 )
-from analytic.from_clamp.phases import judge_phases
+from analytic.checks.of_two import touches_twice
+from analytic.from_clamp.phases import beyond_one_contact, judge_phases
 from tests.analytic.noisy import noisy
 from tests.conftest import exact_sweep
 
@@ -99,3 +103,20 @@ def test_zeros_amid_noise_are_no_silence():
     readings = noisy(exact, size, 3)
     readings.table.loc[np.flatnonzero(free)[1:4], list(size)] = 0.0
     assert (judge_phases(readings).phase[free] == "free").all()
+
+
+@pytest.mark.parametrize(("noise", "least"), [(1e-5, 30.0), (1e-4, 4.0)])
+def test_what_one_contact_does_not_explain(noise, least):
+    """Of two contacts a vibrissa that is curved towards the object shows this much."""
+    beam = Beam(natural_curvature=0.5)
+    exact = solve_sweep(Case(beam, catenary(0.5, -0.8), Sweep(200)))
+    stated = relative_noise(exact, noise)
+    two = touches_twice(exact.table)
+    one = ~two & (exact.table["phase"] != "free").to_numpy()
+    draws = np.random.default_rng(1).normal(size=(3, 200))
+    table = exact.table.assign(
+        **{n: exact.values(n) + stated[n] * x for n, x in zip(CLAMP_READINGS, draws, strict=True)}
+    )
+    missed = beyond_one_contact(replace(exact, table=table), stated)
+    assert np.nanmax(missed[one]) < 4
+    assert np.median(missed[two]) > least
