@@ -126,10 +126,14 @@ def half_cell(found: MeasuredBeam) -> float:
 
 def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     """Sensors in the middle of a rigid first cell, where a beam of its other cells is clamped."""
-    sensors = tuple(s.number for s in (found.force, found.torque) if s is not None)
-    if not (sensors and half_cell(found) and found.body):
+    sensors = [s for s in (found.force, found.torque) if s is not None]
+    if not (sensors and half_cell(found) and sensors[-1].body):
         return ()
-    return _site(found, "half-cell"), Edit("sensor", (("site", "half-cell"),), sensors)
+    own = sensors[-1]
+    at = _text(own.clamp + half_cell(found) * own.along, found.length)
+    site = f'<site name="half-cell" pos="{at}" quat="{_text(own.quaternion)}"/>'
+    numbers = tuple(sensor.number for sensor in sensors)
+    return Insert(site, own.body), Edit("sensor", (("site", "half-cell"),), numbers)
 
 
 def first_stiffness(found: MeasuredBeam) -> float:

@@ -22,10 +22,12 @@ class Sensed:
     name: str  # the sensor's
     number: int  # in the model; and of its site
     site: int
+    body: int  # that has the site
     # What would put the site at the clamp, and turn its axes to the sweep's nearest: its place and
-    # quaternion on its body, shapes (3,) and (4,).
+    # quaternion on its body, shapes (3,) and (4,); and the direction of the vibrissa there.
     clamp: Floats
     quaternion: Floats
+    along: Floats
     # Shape (3, 3); Its reading of a unit of the clamp's action on the vibrissa along x, y, z of the
     # sweep, in columns: a rotation, if it reads what it should.
     axes: Floats

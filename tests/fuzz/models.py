@@ -1,8 +1,9 @@
 """Random foreign models to inspect and fix: ``python -m tests.fuzz.models N [SEED [SWEPT]]``.
 
-Each is a vibrissa as others write one (hinges, pairs of hinges, balls, on a mocap body, a slide, a
-weld, a wrist or a mesh, in units from um to m and from mg to kg), written badly in up to three of
-the ways of `MISTAKES`; or, one in four, such a one, a URDF or a shipped chain, flex or cable, in
+Each is a vibrissa as others write one (hinges, pairs of hinges, balls, with frames between links,
+MuJoCo 4's flex or MuJoCo 3's cable, on a mocap body, a slide, a weld, a wrist or a mesh, in units
+from um to m and from mg to kg), written badly in up to three of the ways of `MISTAKES`; or, one in
+four, such a one, a URDF or a shipped chain, flex or cable, in
 which some numbers are others, or a tendon or a constraint was added. A line a model says what was
 planted, and as flags:
 
@@ -32,7 +33,9 @@ from compare.read.case import load_case
 from compare.simulate.expected import expected
 from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
-from mujoco_models import inspect_model, shipped_models, simulate_model
+from mujoco_models import available_beams, inspect_model, shipped_models, simulate_model
+from tests.compare.simulate.published import cable
+from tests.mujoco_models.inspect.rods import Rod
 
 FAULTY = 0.05  # of the swept; the interval is one of 95 per cent
 
@@ -45,7 +48,7 @@ class Model:
     length: float = 1.0
     rigidity: float = 1.0
     mass: float = 0.313
-    joints: str = "hinge"  # or pair, ball
+    joints: str = "hinge"  # or pair, ball, framed: with a frame fixed between links
     carrier: str = "motor"  # or mocap, slide, weld, servo, mesh
     lead: float = 0.5  # links before the first joint
     first: float = 1.0  # times as stiff
@@ -61,6 +64,7 @@ class Model:
     loss: str = ""
     sensors: tuple[str, ...] = ("force", "torque")
     planted: list[str] = field(default_factory=list)
+    soft: str = ""  # a flex or a cable, as MJCF
 
     @property
     def period(self) -> float:
@@ -69,10 +73,13 @@ class Model:
 
     def text(self) -> str:
         """As MJCF."""
+        if self.soft:
+            return self.soft
         held = f"{self.limit} {self.loss}"
         h, t1 = self.length / self.links, self.period
         count = self.links if self.lead < 1 else self.links - 1
         bodies, weight = "", self.mass / self.links
+        frame = "<body>" if self.joints == "framed" else ""
         for i in range(1, count + 1):
             k = self.rigidity / h * (self.first if i == 1 else 1.0) * (1.5 if i == self.odd else 1)
             spring = f'stiffness="{k:.8g}" damping="{self.damping * t1 * k:.8g}"'
@@ -80,18 +87,20 @@ class Model:
                 "hinge": f'<joint axis="0 0 1" {spring} {held}/>',
                 "pair": f'<joint axis="0 0 1" {spring} {held}/><joint axis="1 0 0" {spring}/>',
                 "ball": f'<joint type="ball" {spring}/>',
+                "framed": f'<joint axis="0 0 1" {spring} {held}/>',
             }[self.joints]
             long = h * (1 - self.lead % 1) if i == count else h
             place = self.lead * h if i == 1 else h
             bodies += (
                 f'<body name="link{i}" pos="0 {place:.8g} 0">{joint}'
                 f'<geom fromto="0 0 0 0 {long:.8g} 0" mass="{weight * long / h:.8g}"/>'
+                f"{frame}"
             )
         where = f'<site name="clamp" {self.site}/>'
         stub = (
             f'<geom fromto="0 0 0 0 {self.lead * h:.8g} 0" mass="{weight}"/>' if self.lead else ""
         )
-        inside = f"{where}{stub}{bodies}{'</body>' * count}"
+        inside = f"{where}{stub}{bodies}{'</body>' * count * (1 + len(frame) // 6)}"
         sensors = "".join(f'<{word} site="clamp"/>' for word in self.sensors)
         return (
             f'<mujoco model="foreign">\n<compiler angle="radian" boundinertia="1.1e-15"/>\n'
@@ -148,6 +157,7 @@ ADDED = (
 )  # fmt: skip
 _FEW = 13  # links
 _GARBLED = 0.25  # of all
+_SOFT = 0.15  # likewise
 
 
 def drawn_urdf(rng: random.Random) -> str:
@@ -208,7 +218,7 @@ def drawn(rng: random.Random) -> Model:
         length=length * unit,
         rigidity=6.4e-4 * 10 ** rng.uniform(-2, 1) * mass * unit**3,
         mass=1.5e-4 * 10 ** rng.uniform(-1, 1) * mass,
-        joints=rng.choice(["hinge", "hinge", "pair", "ball"]),
+        joints=rng.choice(["hinge", "framed", "pair", "ball"]),
         carrier=rng.choice(["motor", "motor", "slide", "mocap", "servo", "mesh", "weld"]),
     )
     for name in rng.sample([*MISTAKES], rng.randint(0, 3)):
@@ -216,6 +226,17 @@ def drawn(rng: random.Random) -> Model:
             MISTAKES[name](model)
             model.planted.append(name)
     return model
+
+
+def drawn_soft(rng: random.Random) -> Model:
+    """A flex, or a cable, whose first edge is rigid or clamped in its middle."""
+    links, length = rng.randint(15, 25), 0.1 * rng.uniform(0.9, 1.3)
+    if "cable" in available_beams():
+        text = cable(length, 2.5e-4, 2.1e11, 8e10, links, 'damping="1e-4"', 'condim="1"').text
+        return Model(links, length, soft=text, planted=["clamp, end"])
+    rigid = rng.random() < _GARBLED
+    text = Rod(links, length, ahead=0.0 if rigid else 0.5).text
+    return Model(links, length, soft=text, planted=["clamp, end"] if rigid else [])
 
 
 @dataclass
@@ -239,7 +260,7 @@ def garbled(rng: random.Random) -> str:
 
 def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
     """Inspect and fix one; sweep it as fixed."""
-    outcome = Outcome(drawn(rng))
+    outcome = Outcome(drawn_soft(rng) if rng.random() < _SOFT else drawn(rng))
     path = folder / "foreign.xml"
     path.write_text(outcome.model.text())
     if not sweep and rng.random() < _GARBLED:
@@ -312,7 +333,8 @@ def main(count: int, seed: int, swept: int = 0) -> int:
             outside += "outside" in outcome.flags
             wrong += any(flag != "outside" for flag in outcome.flags)
             model = outcome.model
-            about = f"{model.links} {model.joints} on {model.carrier}, L = {model.length:.3g}"
+            kind = "of a flex or cable" if model.soft else f"{model.joints} on {model.carrier}"
+            about = f"{model.links} {kind}, L = {model.length:.3g}"
             console.print(f"{i}: {about}, {model.planted} {outcome.said} {outcome.flags or ''}",
                           markup=False)  # fmt: skip
     console.print(f"{wrong} wrong, {outside} of {swept} outside")

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from analytic import Beam
+from compare.simulate.fixing import fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import clamp_stiffness
 from mujoco_models import available_beams, inspect_model
@@ -76,3 +77,13 @@ def test_what_can_leave_the_plane_has_a_note(tmp_path):
     for dof, count in (("", 1), ('dof="2d"', 0)):
         found = Inspection(inspect_model(Rod(10, dof=dof).write(tmp_path)), STATED)
         assert [remark.subject for remark in found.remarks].count("plane") == count
+
+
+def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
+    """On the hand, and not on the free body that the rod hangs on, which feels no contacts."""
+    path = Rod(ahead=0.0).write(tmp_path)
+    before = Inspection(inspect_model(path))
+    after = fix(path, {}, before, tmp_path / "fixed.xml").inspection
+    assert [r.subject for r in before.remarks if r.kind == "fault"] == ["clamp"]
+    assert after.sound, after.remarks
+    assert after.found.length == pytest.approx(0.1 * (1 - 1 / 40), rel=1e-3)
