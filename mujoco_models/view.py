@@ -10,6 +10,7 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
+from analytic.problem.mirror import leftward
 from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.settings import Settings
@@ -28,13 +29,11 @@ def show(case: Case, settings: Settings) -> None:
 
     A sweep to the right is simulated as its mirror image, so it is looked at from behind.
     """
-    case.require_sweep("the viewer")
     _ask_for_display()
-    to_right = case.sweep.direction == "right"
-    leftward = case.mirrored() if to_right else case
-    walk = set_out(leftward, settings)
+    to_right, to_left = case.direction == "right", leftward(case)
+    walk = set_out(to_left, settings)
     model, data = walk.model.model, walk.model.data
-    foot_x = leftward.foot_x / leftward.beam.length
+    foot_x = to_left.foot_x / to_left.beam.length
     stage = _Stage(walk.model, height=max(1.3, (np.ptp(foot_x) + 1) / _WIDTH_TO_HEIGHT))
     with mujoco.viewer.launch_passive(
         model, data, show_left_ui=False, show_right_ui=False
@@ -42,7 +41,7 @@ def show(case: Case, settings: Settings) -> None:
         with viewer.lock():
             stage.light(viewer.opt)
             _aim(viewer.cam, model, float(foot_x.mean()), to_right)
-        for target in foot_x:
+        for target in to_left.way:
             with viewer.lock():
                 walk.go_to(float(target))
             stage.dress(viewer)

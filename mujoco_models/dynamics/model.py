@@ -5,8 +5,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
-from analytic.problem.poses import Pose, Poses
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.case import Case
+from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam
@@ -24,6 +25,7 @@ _FIRST = 2 * np.pi  # rad/T1
 # Of MuJoCo's solver; its cost goes with the square of what is out of balance. With 1e-10 a sweep of
 # ten segments in `implicitfast` stayed 3.4e-4 off the one at rest, however slow it was.
 _TOLERANCE = 1e-16
+_DRIVES, _ANGLE = ("drive", "lift", "turn"), 2  # joints of the foot, one each a part of a pose
 _STUB = 1e-4  # L, of a foot on which the vibrissa turns; it must have some mass
 _AHEAD = 0.01  # L; beads that are nearer to the obstacle are looked at in each step
 _CLEAR = 1e-5  # L; those that are farther off touch nothing, whatever single precision rounds
@@ -51,27 +53,25 @@ class MovingModel(SteppedModel):
     def __init__(
         self,
         beam: Beam,
-        radius: float,
         obstacle: Obstacle,
         motion: Motion,
-        poses: Poses,
+        case: Case,
         begin: float,
     ) -> None:
-        start = poses.at(np.array(begin))
-        self._layout, self.obstacle, self._radius = beam.layout, obstacle, radius
-        self._angle = float(start.angle)
-        compiled = _spec(beam, radius, obstacle, motion, start).compile()
+        self._layout, self.obstacle, self._radius = beam.layout, obstacle, case.radius
+        self._poses, self._at, self._ahead = case.poses, begin, begin
+        # Of foot_x, foot_y and the angle those that change.
+        self._driven = np.flatnonzero([np.ptp(x) > 0 for x in case.poses.at(case.way)])
+        compiled = _spec(beam, motion, obstacle, case, self._pose, self._driven).compile()
         implicit = motion.solref is None and motion.integrator == "discrete"
         super().__init__(compiled, obstacle.label, 1.0, follows_inertia=implicit)
         links = len(beam.layout.joints)
-        self._surface = Surface.of(self.model, links, obstacle.corners, radius)
+        self._surface = Surface.of(self.model, links, obstacle.corners, case.radius)
         self._set_contacts(motion)
         # Runge and Kutta's method looks for contacts on the way of a step, too.
         self._leaves_out = obstacle.upright and motion.integrator != "rk4"
         scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
-        self._lookout = Lookout(scene, obstacle, radius, beam.layout)
-        self._foot = self.model.body(FOOT).id
-        self._joints = np.unique(self.model.jnt_bodyid[1:])
+        self._lookout = Lookout(scene, obstacle, case.radius, beam.layout)
         if any(beam.layout.vibrissa.weight):
             self._hang(beam)
         mujoco.mj_forward(self.model, self.data)
@@ -79,14 +79,14 @@ class MovingModel(SteppedModel):
 
     def _hang(self, beam: Beam) -> None:
         """Start with the vibrissa at rest under its weight, as no object holds it."""
-        model, data = self.model, self.data
+        model, data, count = self.model, self.data, len(self._driven)
 
         def imbalance(angles: Floats) -> Floats:
-            data.qpos[1:] = angles
+            data.qpos[count:] = angles
             mujoco.mj_forward(model, data)
-            return np.asarray(data.qfrc_passive - data.qfrc_bias)[1:]
+            return np.asarray(data.qfrc_passive - data.qfrc_bias)[count:]
 
-        data.qpos[1:] = hang(model, beam, self._angle, imbalance)
+        data.qpos[count:] = hang(model, beam, float(self._pose.angle), imbalance)
 
     def _set_contacts(self, motion: Motion) -> None:
         """As `BeamModel` does, or MuJoCo's own parameters."""
@@ -101,18 +101,27 @@ class MovingModel(SteppedModel):
         self._rub(motion, geoms)
 
     @property
-    def foot_x(self) -> float:
-        """Where the foot is [L]."""
-        return float(self.data.xpos[self._foot, 0])
+    def p(self) -> float:
+        """Where the clamp is on its way."""
+        return self._at
+
+    @property
+    def _pose(self) -> Pose:
+        """Of the clamp, in the state that is reported."""
+        return self._poses.at(np.array(self._at))
 
     @property
     def tip_angle(self) -> float:
         """Slope angle of the last link [rad]."""
-        return self._layout.tip_angle(self.data.qpos[1:]) + self._angle
+        bends = self.data.qpos[len(self._driven) :]
+        return self._layout.tip_angle(bends) + float(self._pose.angle)
 
     def step(self, speed: float) -> None:
-        """By the force on a heavy carriage that accelerates it so."""
-        self._carry(-speed)
+        """By forces on a heavy carriage that accelerate it so."""
+        begin, self._ahead = self._ahead, self._ahead - speed * self.model.opt.timestep
+        self._at = begin
+        rate = np.array(self._poses.rate(np.array((begin + self._ahead) / 2)))
+        self._carry(-speed * rate[self._driven])
         if self._leaves_out:
             self._leave_out()
         self._advance()
@@ -144,12 +153,12 @@ class MovingModel(SteppedModel):
 
     def contacts(self) -> Contacts:
         """What MuJoCo reports of the last step, loaded or not."""
-        joints = np.asarray(self.data.xanchor[1:, :2])
+        joints = np.asarray(self.data.xanchor[len(self._driven) :, :2])
         return Contacts.of(self.data, self._surface, self._layout, joints)
 
     def clamp(self) -> Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors."""
-        return by_sensors(self.data, self._angle)
+        return by_sensors(self.data, float(self._pose.angle))
 
     @property
     def touches(self) -> bool:
@@ -167,33 +176,41 @@ class MovingModel(SteppedModel):
             **contacts.as_reading(self.data.contact.pos[:, :2], contacts.loaded),
             "tip_angle": self.tip_angle,
             "status": "ok",
-            "kinetic_share": self.kinetic_share(speed),
+            "kinetic_share": self.kinetic_share(),
         }
 
-    def kinetic_share(self, speed: float) -> float:
-        """Kinetic energy, seen from the foot, over kinetic and elastic energy."""
-        seen = self.data.qvel.copy()
-        seen[0] += speed
+    def kinetic_share(self) -> float:
+        """Kinetic energy, seen from the clamp, over kinetic and elastic energy."""
+        seen, count = self.data.qvel.copy(), len(self._driven)
+        seen[:count] = 0
         model, data = self.model, self.data
         lifted = float(model.body_mass @ (data.xipos @ model.opt.gravity))  # against the weight
-        return self._share_of_kinetic(seen, slice(1, None), float(data.energy[0]) + lifted)
+        return self._share_of_kinetic(seen, slice(count, None), float(data.energy[0]) + lifted)
 
 
 def _spec(
-    beam: Beam, radius: float, obstacle: Obstacle, motion: Motion, start: Pose
+    beam: Beam,
+    motion: Motion,
+    obstacle: Obstacle,
+    case: Case,
+    start: Pose,
+    driven: Integers,
 ) -> mujoco.MjSpec:
-    """The model at rest, with masses, dampers, and a foot that slides."""
-    spec = assemble(beam, radius, obstacle)
+    """The model at rest, with masses, dampers, and a foot that slides and turns."""
+    spec = assemble(beam, case.radius, obstacle)
+    angle = float(start.angle)
+    sin, cos = np.sin(angle), np.cos(angle)
     foot = spec.body(FOOT)
-    foot.pos, foot.quat = [start.foot_x, 0, 0], about_z(float(start.angle))
-    # A force accelerates it, so that the vibrissa feels the start; the joint's own inertia is no
-    # part of what the sensors at the clamp feel.
-    foot.add_joint(
-        name="drive",
-        type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=[np.cos(start.angle), -np.sin(start.angle), 0],
-        armature=CARRIAGE * MASS,
-    )
+    foot.pos, foot.quat = [start.foot_x, start.foot_y, 0], about_z(angle)
+    # Forces accelerate it, so that the vibrissa feels the start; the joints' own inertia is no
+    # part of what the sensors at the clamp feel. They are in this order: it turns about its place.
+    for axis in driven.tolist():
+        foot.add_joint(
+            name=_DRIVES[axis],
+            type=mujoco.mjtJoint.mjJNT_HINGE if axis == _ANGLE else mujoco.mjtJoint.mjJNT_SLIDE,
+            axis=[[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]][axis],
+            armature=CARRIAGE * MASS,
+        )
     give_mass(spec, beam.layout, motion)
     set_weight(spec, beam.layout, MASS)
     set_options(spec, motion)
@@ -211,7 +228,8 @@ def give_mass(spec: mujoco.MjSpec, layout: Layout, motion: Motion) -> None:
     for capsule, volume in zip(capsules, volumes[-len(capsules) :], strict=True):
         capsule.mass = MASS * volume
     dampers = 2 * motion.damping_ratio / _FIRST
-    bends = [j for j in spec.joints if j.type != mujoco.mjtJoint.mjJNT_SLIDE]
+    drives = mujoco.mjtJoint.mjJNT_SLIDE
+    bends = [j for j in spec.joints if j.type != drives and j.name not in _DRIVES]
     for joint, compliance in zip(bends, layout.compliances.tolist(), strict=True):
         joint.armature = motion.armature * motion.timestep**2 / compliance
         joint.damping[0] = dampers / compliance

@@ -41,8 +41,8 @@ class SteppedModel(ABC):
 
     @property
     @abstractmethod
-    def foot_x(self) -> float:
-        """Where the foot is [L]."""
+    def p(self) -> float:
+        """Where the clamp is on its way in the state that is reported; of a sweep, the foot [L]."""
 
     @property
     @abstractmethod
@@ -59,17 +59,17 @@ class SteppedModel(ABC):
 
     @abstractmethod
     def step(self, speed: float) -> None:
-        """One step, at whose end the foot has a speed to the left [L/T1].
+        """One step, at whose end the clamp has a speed on its way [L/T1, rad/T1].
 
         What the model reports afterwards is the state at the beginning of the step, as MuJoCo's
         sensors do.
         """
 
-    def _carry(self, speed: float) -> None:
-        """A heavy carriage, the first degree of freedom, is to have a speed after a step."""
+    def _carry(self, speeds: Floats) -> None:
+        """A heavy carriage, the first degrees of freedom, is to have speeds after a step."""
         self.time = self.now
-        change = speed - float(self.data.qvel[0])
-        self.data.qfrc_applied[0] = CARRIAGE * MASS * change / self.model.opt.timestep
+        change = speeds - self.data.qvel[: len(speeds)]
+        self.data.qfrc_applied[: len(speeds)] = CARRIAGE * MASS * change / self.model.opt.timestep
 
     def _advance(self) -> None:
         """One step of MuJoCo's."""

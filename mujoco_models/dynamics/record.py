@@ -18,7 +18,7 @@ class Step:
     """One step of MuJoCo's."""
 
     time: float  # since the start [T1]
-    foot_x: float  # foot position [L]
+    p: float  # parameter of the clamp's way, that of a sweep the foot position [L]
     clamp: Floats  # force and moment, as the sensor gives them [EI/L^2, EI/L]
     touches: bool  # whether a contact is loaded
 
@@ -26,7 +26,7 @@ class Step:
 class StationMeans:
     """Means of the readings over the way round each station, and the raw ones at it.
 
-    Between two steps the readings are taken to be linear in the foot's position, so that the means
+    Between two steps the readings are taken to be linear in the clamp's way, so that the means
     are centred at the stations wherever the steps fall.
     """
 
@@ -52,7 +52,7 @@ class StationMeans:
 
     @property
     def first(self) -> float:
-        """Foot position at which the first station's way begins [L]."""
+        """Where the first station's way begins."""
         return self._stations[0] + self._half
 
     @property
@@ -65,12 +65,12 @@ class StationMeans:
         return (
             not self.complete
             and self._pending is None
-            and after.foot_x <= self._stations[len(self.rows)] < before.foot_x
+            and after.p <= self._stations[len(self.rows)] < before.p
         )
 
     def note(self, before: Step, after: Step, state: dict[str, Any]) -> None:
         """Keep the raw readings and the state at the station between two steps."""
-        share = (before.foot_x - self._stations[len(self.rows)]) / (before.foot_x - after.foot_x)
+        share = (before.p - self._stations[len(self.rows)]) / (before.p - after.p)
         raw = before.clamp + share * (after.clamp - before.clamp)
         self._held = before.touches and after.touches
         self._pending = {
@@ -89,19 +89,19 @@ class StationMeans:
             return False
         station = self._stations[len(self.rows)]
         begin, end = station + self._half, station - self._half
-        right, left = min(begin, before.foot_x), max(end, after.foot_x)
+        right, left = min(begin, before.p), max(end, after.p)
         if right > left:
-            middle = (before.foot_x - (right + left) / 2) / (before.foot_x - after.foot_x)
+            middle = (before.p - (right + left) / 2) / (before.p - after.p)
             self._sum += (before.clamp + middle * (after.clamp - before.clamp)) * (right - left)
             self._apart += apart * (right - left)
-        if self._pending is None or after.foot_x > end:
+        if self._pending is None or after.p > end:
             return False
         self._close()
         return True
 
     @property
     def last_touch(self) -> float | None:
-        """Foot position at which contact was lost for good; None if there is one, or was none.
+        """Where contact was lost for good; None if there is one, or was none.
 
         What is found again within half a period is one contact with its bounces. Where that lasted
         half a period, a shorter one after it is but the vibrissa that swings back.
@@ -119,15 +119,15 @@ class StationMeans:
             return
         if sample.touches:
             if self.first_touch is None:
-                self.first_touch = sample.foot_x
+                self.first_touch = sample.p
             if sample.time - self._lost > _HALF_PERIOD:
                 self._begun = sample.time
             return
         self._lost = sample.time
         if sample.time - self._begun >= _HALF_PERIOD:
-            self._lasting = sample.foot_x
+            self._lasting = sample.p
         else:
-            self._brief = sample.foot_x
+            self._brief = sample.p
 
     def _close(self) -> None:
         row = self._pending or {}

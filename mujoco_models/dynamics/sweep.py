@@ -47,7 +47,7 @@ def run_there_and_back(
     passes, record = _prepared(case, motion, settings)
     on = passes.swept(record, advance, keep)
     # As if it went on to the left past the mirrored stations.
-    returning = StationMeans(-case.foot_x[::-1] / case.beam.length, motion.average)
+    returning = StationMeans(-case.way[::-1], motion.average)
     return on, passes.swept(returning, advance, keep, back=True)
 
 
@@ -55,8 +55,8 @@ def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes",
     """The model at its start, with the case's friction, and what takes its readings."""
     if motion.friction is None:
         motion = replace(motion, friction=case.friction)
-    record = StationMeans(case.foot_x / case.beam.length, motion.average)
-    steps = float(np.ptp(case.foot_x)) / case.beam.length / motion.speed / motion.timestep
+    record = StationMeans(case.way, motion.average)
+    steps = float(np.ptp(case.way)) / motion.speed / motion.timestep
     if steps > _MOST_STEPS:
         raise InputError(
             "motion.speed",
@@ -70,7 +70,7 @@ def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes",
 
 
 def start_of(record: StationMeans, motion: Motion) -> float:
-    """Where the foot starts, to have its speed on the way to the first station."""
+    """Where on its way the clamp starts, to have its speed on the way to the first station."""
     return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
 
 
@@ -82,13 +82,12 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
             "a chain or rod in the plane, for a sweep in motion",
             "choose one, or sweep at rest",
         )
-    case.require_sweep("a sweep in motion")
     beam, obstacle = parts(case, settings)
-    return MovingModel(beam, case.radius, obstacle, motion, case.poses, start)
+    return MovingModel(beam, obstacle, motion, case, start)
 
 
 class Drive:
-    """Steps of a foot that passes stations, and the sensors' filter in them."""
+    """Steps of a clamp that passes stations, and the sensors' filter in them."""
 
     def __init__(self, model: SteppedModel, motion: Motion) -> None:
         self._model, self._motion = model, motion
@@ -125,7 +124,7 @@ class Drive:
         """
         model, motion, begun = self._model, self._motion, self._model.now
         facing, touches = (-1.0, model.touches) if back else (1.0, False)
-        before = Step(model.time, facing * model.foot_x, self._filtered, touches)
+        before = Step(model.time, facing * model.p, self._filtered, touches)
         while not record.complete:
             passed = model.now + motion.timestep - begun
             ramps = passed / motion.ramp if motion.ramp > 0 else math.inf
@@ -133,7 +132,7 @@ class Drive:
             model.step(speed)
             change = np.array(model.clamp()) - self._filtered
             self._filtered = self._filtered + self._follows * change
-            after = Step(model.time, facing * model.foot_x, self._filtered, model.touches)
+            after = Step(model.time, facing * model.p, self._filtered, model.touches)
             while True:
                 if record.crosses(before, after):
                     record.note(before, after, model.state(speed))
@@ -167,19 +166,20 @@ class Passes(Drive):
     ) -> Readings:
         """The readings of the way on, to the left, or of that back."""
         case, motion = self._case, self._motion
-        turn_at = self._model.foot_x - motion.speed * motion.ramp / 2 if back else None
+        turn_at = self._model.p - motion.speed * motion.ramp / 2 if back else None
         about = {
             "engine": engine(),
             **self._about,
             "motion": asdict(motion),
             "obstacle": self._model.label,
         }
+        places = {"foot_x": case.foot_x, **case.way_columns}
         recorder = Recorder(
             case,
             self._source,
             about,
             lambda: self._events(record, turn_at),
-            {"foot_x": case.foot_x[::-1] if back else case.foot_x},
+            {name: x[:: -1 if back else 1] for name, x in places.items()},
             record.rows,
         )
         readings = self.recorded(recorder, record, advance, keep, back)
@@ -187,7 +187,7 @@ class Passes(Drive):
         return readings
 
     def _events(self, record: StationMeans, turn_at: float | None) -> dict[str, float | None]:
-        """Foot positions of what has happened so far, by name [L]; `turn_at` on the way back."""
+        """Parameters of the way at what has happened so far, by name; `turn_at` on the way back."""
         last = record.last_touch
         if turn_at is None:
             return {"first_contact": record.first_touch, "snap_off": last}

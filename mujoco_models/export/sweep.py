@@ -52,7 +52,7 @@ class _Written(SteppedModel):
         mujoco.mj_forward(self.model, self.data)
 
     @property
-    def foot_x(self) -> float:
+    def p(self) -> float:
         """Where the foot is [L]."""
         return float(self.data.xpos[self._foot, 0]) / self._beam.length
 

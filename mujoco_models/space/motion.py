@@ -81,13 +81,13 @@ class MovingSpace(SteppedModel):
         mujoco.mj_forward(model, self.data)
 
     @property
-    def foot_x(self) -> float:
+    def p(self) -> float:
         """What is left of the way, so that it falls; 0 at the way's begin."""
         return self._start - float(self.data.qpos[0])
 
     def step(self, speed: float) -> None:
         """By the force on a heavy carriage that accelerates it so."""
-        self._carry(speed)
+        self._carry(np.array([speed]))
         self._advance()
 
     def clamp(self) -> tuple[float, ...]:

@@ -132,7 +132,7 @@ class UserModelInMotion(SteppedModel):
         return np.asarray(place + turn @ self._clamp)
 
     @property
-    def foot_x(self) -> float:
+    def p(self) -> float:
         """Where the foot is, in the case's frame [L]."""
         moved = (self.clamp_at - self._origin) @ self._axes[0]
         return float(self._start + moved / self._beam.length)
@@ -144,7 +144,7 @@ class UserModelInMotion(SteppedModel):
         unit = self._beam.length
         self._drive(self.data, self._way * unit, speed * unit / self._period)
         self._advance()
-        behind = self._way - (self._start - self.foot_x)
+        behind = self._way - (self._start - self.p)
         if abs(behind) > _LAGS[0] + _LAGS[1] * self._way:
             if np.abs(self.clamp()).max() > _WILD:
                 raise DivergedError("the vibrissa throws its foot about")

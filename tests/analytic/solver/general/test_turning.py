@@ -34,7 +34,7 @@ from compare import compare
 from compare.simulate.dispatch import simulate
 from compare.study.grid.file import load_study
 from engines.apart import _sweep
-from mujoco_models import Settings, simulate_motion, simulate_sweep
+from mujoco_models import Settings, simulate_sweep
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_whisking.csv")
 PROFILES = {
@@ -201,7 +201,6 @@ def test_who_knows_no_way_but_a_sweep_says_so():
     readings = solve_sweep(case)
     plain = solve_sweep(named_case("catenary"))
     for refused in (
-        lambda: simulate_motion(case),
         lambda: simulate_sweep(case, Settings(beam="rod", planar=False)),
         lambda: simulate(case, Settings(), engine="dart"),
         lambda: compare(readings, readings, offset="auto"),
