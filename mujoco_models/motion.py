@@ -44,7 +44,7 @@ class Motion:
     Parameters
     ----------
     speed : float
-        Of the foot [L/T1], or of a clamp that turns about it [rad/T1].
+        Of the foot, or where the clamp turns, one L from it [L/T1].
     timestep : float
         Of MuJoCo [T1].
     integrator : str

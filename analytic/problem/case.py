@@ -5,13 +5,13 @@ import json
 import math
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.clamp_path import ClampWay, Direction, Sweep
+from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
@@ -78,7 +78,7 @@ class Case(Shown):
 
     beam: Beam = field(default_factory=Beam)
     profile: Contour = field(default_factory=lambda: catenary(0.5, -0.8))
-    sweep: Any = field(default_factory=Sweep)
+    sweep: Sweep | TurningWay = field(default_factory=Sweep)
     name: str = "case"
     clamp_stiffness: float = field(default=math.inf, kw_only=True)
     friction: float = field(default=0.0, kw_only=True)
@@ -176,14 +176,14 @@ class Case(Shown):
     @property
     def direction(self) -> Direction:
         """Where the foot moves to, or the clamp turns to."""
-        return cast("Direction", self.sweep.direction)
+        return self.sweep.direction
 
     @cached_property
     def poses(self) -> Poses:
         """The way of the clamp, of a case to the left."""
         if isinstance(self.sweep, Sweep):
             return along_x(self.clamp_angle)
-        return cast("Poses", self.sweep.poses(self.beam.length))
+        return self.sweep.poses(self.beam.length)
 
     @cached_property
     def way(self) -> Floats:
@@ -216,7 +216,7 @@ class Case(Shown):
         """Values of what the sweep runs over, shape (stations,)."""
         if isinstance(self.sweep, Sweep):
             return self.foot_x
-        return cast("Floats", self.sweep.stations_along(self.beam.length))
+        return self.sweep.stations_along(self.beam.length)
 
     @cached_property
     def stations(self) -> Pose:
@@ -300,7 +300,7 @@ class Case(Shown):
             allowed = f"0: {who} cannot take it into account"
             raise InputError("clamp_angle", self.clamp_angle, allowed, "leave it out")
 
-    def require_sweep(self, who: str) -> None:
+    def require_sweep(self, who: str) -> Sweep:
         """Refuse a case whose clamp turns or leaves its line on its way.
 
         Parameters
@@ -308,13 +308,18 @@ class Case(Shown):
         who : str
             Who cannot take that into account.
 
+        Returns
+        -------
+        Sweep
+            The case's own.
+
         Raises
         ------
         InputError
             If it does, or if there are several objects.
         """
         self.require_one_object(who)
-        self._require_line(who)
+        return self._require_line(who)
 
     def require_one_object(self, who: str) -> None:
         """Refuse a case with several objects.
@@ -334,11 +339,13 @@ class Case(Shown):
             remedy = "solve it in closed form (exact), or sweep past one"
             raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
 
-    def _require_line(self, who: str) -> None:
+    def _require_line(self, who: str) -> Sweep:
         if not isinstance(self.sweep, Sweep):
             what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
             allowed = f"a Sweep, with the foot along its line: {who} can do no other"
-            raise InputError("way of the clamp", what, allowed, "solve it in closed form (exact)")
+            remedy = "take the closed form or MuJoCo"
+            raise InputError("way of the clamp", what, allowed, remedy)
+        return self.sweep
 
     def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
         """The same sweep between other positions of the foot.
@@ -360,10 +367,9 @@ class Case(Shown):
         InputError
             If the clamp turns or leaves its line on its way.
         """
-        self._require_line("a sweep between other positions of the foot")
-        number = self.sweep.stations if stations is None else stations
-        ends = replace(self.sweep, stations=number, start=start, stop=stop)
-        return replace(self, sweep=ends)
+        sweep = self._require_line("a sweep between other positions of the foot")
+        number = sweep.stations if stations is None else stations
+        return replace(self, sweep=replace(sweep, stations=number, start=start, stop=stop))
 
     def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Case":
         """The case over its own stations, whatever else is changed of it then, or beside them.
@@ -543,14 +549,16 @@ class Case(Shown):
 
     @cached_property
     def _start(self) -> float:
-        if self.sweep.start is not None:
-            return cast("float", self.sweep.start)
+        start = self._require_line("a foot position to start from").start
+        if start is not None:
+            return start
         return (self._first_contact - self._way * _MARGIN) * self.beam.length
 
     @cached_property
     def _stop(self) -> float:
-        if self.sweep.stop is not None:
-            return cast("float", self.sweep.stop)
+        stop = self._require_line("a foot position to stop at").stop
+        if stop is not None:
+            return stop
         if self.others:
             alone = [replace(self, others=()), *self.alone]
             return max((one._stop for one in alone), key=lambda stop: self._way * stop)

@@ -30,14 +30,19 @@ class ClampWay(ABC):
     def running(self) -> Running:
         """The column over which it runs."""
 
-
-class TurningWay(ClampWay):
-    """One on which the clamp turns, or leaves its line."""
+    @property
+    @abstractmethod
+    def stations(self) -> int:
+        """How many there are."""
 
     @property
     @abstractmethod
     def direction(self) -> Direction:
         """Where it goes to."""
+
+
+class TurningWay(ClampWay):
+    """One on which the clamp turns, or leaves its line."""
 
     @abstractmethod
     def stations_along(self, length: float) -> Floats:

@@ -183,16 +183,22 @@ class CaseFile(Table):
         check_support(found.support, found.beam)
         return found
 
+    def way(self) -> Sweep | Whisk:
+        """The way of the clamp."""
+        if self.whisk is None:
+            return self.sweep.build()
+        if "sweep" in self.model_fields_set:
+            raise InputError("[sweep] beside [whisk]", "both", "one of them", "leave one out")
+        return self.whisk.build()
+
     def case(self, folder: Path, name: str, others: Sequence["CaseFile"] = ()) -> Case:
         """The whole problem; with the objects of other files that are like this one."""
         beam, contour, held = self.physics(folder)
-        if self.whisk is not None and "sweep" in self.model_fields_set:
-            raise InputError("[sweep] beside [whisk]", "both", "one of them", "leave one out")
         try:
             return Case(
                 beam,
                 contour,
-                self.sweep.build() if self.whisk is None else self.whisk.build(),
+                self.way(),
                 self.name or name,
                 others=tuple(other.profile.build(folder) for other in others),
                 **held._asdict(),

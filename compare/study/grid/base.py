@@ -40,9 +40,6 @@ class Base:
         self._folder = file.path.parent
         self._tables = self._overlaid(content)
         checked = checked_run(self._tables, file.place)
-        if isinstance(checked, PlanarRun) and checked.whisk is not None:
-            allowed = "left out: a study sweeps the foot along its line"
-            raise InputError(file.place(["whisk"]), "given", allowed, "choose a case with a sweep")
         try:
             self._built(checked)
         except InputError as error:
@@ -124,7 +121,7 @@ class Base:
             case.case(self._folder, "study")
             return
         case.physics(self._folder)
-        case.sweep.build()
+        case.way()
         if case.motion is not None:
             case.motion.build(case.beam.build())
         if len(names := named_engines(case.engine.name)) > 1:
@@ -145,7 +142,7 @@ class Base:
                 raise InputError(
                     file.place(["model"]), "of a study", "left out", "a study sweeps our models"
                 )
-            base = {name: t for name, t in file.tables.items() if name in (*RUN_TABLES, "whisk")}
+            base = {name: t for name, t in file.tables.items() if name in RUN_TABLES}
         else:
             here, more = self._file.place(["study", "case"]), ", or the path of a .toml file"
             remedy = "leave it out to describe the case here"
@@ -162,6 +159,7 @@ def _plain(case: PlanarRun | SpatialRun) -> dict[str, Any]:
     tables = case.model_dump(include={*RUN_TABLES} - {"motion"})
     if isinstance(case, SpatialRun):
         return {name: table for name, table in tables.items() if table is not None}
+    del tables["whisk" if case.whisk is None else "sweep"]  # one of them is the way
     if case.motion is not None:
         tables["motion"] = asdict(case.motion.build(case.beam.build()))
     return tables

@@ -146,7 +146,7 @@ class StudyTable(Table):
     zip: list[list[str]] = Field(default_factory=list)
 
 
-_ALIKE = ("name", "whisk", "model", "tolerances", "uncertainty")  # in all runs, or in none
+_ALIKE = ("name", "model", "tolerances", "uncertainty")  # in all runs, or in none
 RUN_TABLES = tuple(
     name
     for name in dict.fromkeys((*PlanarRun.model_fields, *SpatialRun.model_fields))

@@ -85,6 +85,17 @@ def events(
     }
 
 
+def events_on_way(found: Readings) -> dict[str, float | bool | None]:
+    """Say where on a way of the clamp the events are, and how short the contact became [L]."""
+    known = found.provenance["events"]
+    shortest = found.table["contact_arc_length"].min() / found.beam.length
+    return {
+        "phase_b_exists": bool((found.table["phase"] == "tangent").any()),
+        "contact_length_minimum": float(shortest),
+        **{f"event_{name}": known.get(name) for name in _EVENTS},
+    }
+
+
 def events_in_space(found: SpatialReadings) -> dict[str, float | int | None]:
     """Say where a sweep in space first touches and first leaves."""
     known = [(event["kind"], float(event["travel"])) for event in found.provenance["events"]]

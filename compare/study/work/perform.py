@@ -15,6 +15,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from analytic import InputError, Readings, solve_sweep
+from analytic.problem.errors import require
 from analytic.space import SpatialReadings, solve_space
 from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
@@ -129,15 +130,18 @@ def _measure(
     method = run.reconstruction.method
     if study.in_space and "reconstruction" in study.record and method != "elastica":
         raise InputError("reconstruction.method", method, "elastica in space", "leave it out")
-    if isinstance(run, PlanarRun) and "events" in study.record:
+    along_line = isinstance(run, PlanarRun) and run.whisk is None
+    if isinstance(run, PlanarRun) and along_line and "events" in study.record:
         physics, direction = run.physics(Path()), run.sweep.direction
         events = known.events or metrics.find(physics, direction)
         row |= metrics.events(events, physics.beam.length, direction)
-    if isinstance(run, PlanarRun) and study.events_only:
+    if along_line and study.events_only:
         return row
     reference = known.reference or _solved(run)
-    if isinstance(reference, SpatialReadings) and "events" in study.record:
+    if "events" in study.record and isinstance(reference, SpatialReadings):
         row |= metrics.events_in_space(reference)
+    elif "events" in study.record and not along_line:
+        row |= metrics.events_on_way(require("readings", reference, Readings, "in the plane"))
     simulated = reference
     if study.beams:
         begin = time.perf_counter()

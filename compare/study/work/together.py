@@ -44,7 +44,7 @@ def _with_events(known: list[Known]) -> list[Known]:
     profiles: list[Contour] = []
     beams: list[Beam] = []
     for i, one in enumerate(known):
-        if one.run is None:
+        if one.run is None or one.run.whisk is not None:
             continue
         try:
             beam, profile, held = one.run.physics(Path())

@@ -32,7 +32,6 @@ from analytic import (
 from analytic.from_clamp.shape import deflected_shapes
 from compare import compare
 from compare.simulate.dispatch import simulate
-from compare.study.grid.file import load_study
 from engines.apart import _sweep
 from mujoco_models import Settings, simulate_sweep
 
@@ -213,21 +212,3 @@ def test_who_knows_no_way_but_a_sweep_says_so():
         with pytest.raises(InputError, match=r"along its line|Sweep"):
             refused()
     assert "along its line" in str(_sweep("dart", case, Settings()))
-
-
-@pytest.mark.parametrize("kept", ["named", "file"])
-def test_a_study_does_not_take_a_whisk_for_a_sweep(tmp_path, kept):
-    case = "whisk-catenary"
-    if kept == "file":
-        case = "whisk.toml"
-        (tmp_path / case).write_text(
-            '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
-            "[whisk]\nfoot_x = 0.6\nstart = -1.1\nstop = 1.7\n"
-        )
-    study = tmp_path / "study.toml"
-    study.write_text(
-        f'[study]\nname = "s"\ncase = "{case}"\nrecord = ["events"]\n'
-        '[axes]\n"beam.radius" = [0.004, 0.005]\n'
-    )
-    with pytest.raises(InputError, match=r"whisk.*along its line"):
-        load_study(study)

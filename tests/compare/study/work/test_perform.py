@@ -9,9 +9,12 @@ import pytest
 from analytic import (
     Beam,
     Case,
+    InputError,
     Sweep,
+    Whisk,
     catenary,
     find_events,
+    named_case,
     reconstruct,
     relative_noise,
     solve_sweep,
@@ -79,6 +82,33 @@ def test_reconstruction_is_exact_without_noise_and_gets_worse_with_it(plan_of):
     errors = [perform(plan.study.recipe, run).row["reconstruction_rms"] for run in plan]
     assert errors[0] < 1e-9
     assert (np.diff(errors) > 0).all()
+
+
+def test_a_study_of_whisks(plan_of):
+    plan = plan_of("""
+        study = { case = "whisk-circle", beams = ["chain"], record = ["events", "disagreement"] }
+        axes.whisk.foot_x = [0.35, 0.45]
+        axes.whisk.stop = [1.5]
+        whisk.stations = 12
+        mujoco = { segments = 10, contour_points = 400 }
+    """)
+    for run in plan:
+        row = perform(plan.study.recipe, run).row
+        assert (row["outcome"], row["reason"]) == ("done", "")
+        way = Whisk(run.parameters["whisk.foot_x"], -0.55, 1.5, 12)
+        exact = solve_sweep(replace(named_case("whisk-circle"), sweep=way))
+        assert row["event_first_contact"] == exact.provenance["events"]["first_contact"]
+        assert row["event_snap_off"] == exact.provenance["events"]["snap_off"]
+        assert row["phase_b_exists"]
+        assert 0 < row["disagreement_force_y_rms"] < 0.05
+
+
+def test_a_study_of_whisks_has_no_sweep(plan_of):
+    with pytest.raises(InputError, match=r"\[sweep\] beside \[whisk\]"):
+        plan_of("""
+            study = { case = "whisk-circle", record = ["events"] }
+            axes.sweep.stations = [10, 20]
+        """)
 
 
 def test_bad_input_is_an_outcome(plan_of):
