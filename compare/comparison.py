@@ -129,6 +129,7 @@ class Comparison(Judged[Readings], Measurement):
                 },
                 "transitions": {name: event.to_dict() for name, event in self.transitions.items()},
             },
+            "running": self.reference.running,
             "snap_off": self.snap_off.to_dict(),
             "stations": self.alignment.counts,
             "records": {which: record.to_dict() for which, record in self.records.items()},

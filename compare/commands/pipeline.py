@@ -150,7 +150,8 @@ def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
     ):  # fmt: skip
         shift = found.snap_off.difference
         sizes = (f"{name} {found.disagreement[name].rms:.1e}" for name in CLAMP_READINGS)
-        late = "" if shift is None else f"; snap-off {shift / job.case.beam.length:+.1e} L"
+        size, unit = rest.running_unit
+        late = "" if shift is None else f"; snap-off {shift / size:+.1e} {unit}"
         terminal.show(Text(f"{what}: {', '.join(sizes)}{late}"))
 
 

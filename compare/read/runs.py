@@ -34,6 +34,7 @@ class RunRecord(BaseModel):
     ]
     # Share of stations whose phase is rightly judged from the clamp, in the worse sweep.
     phases_right: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
+    running: str = "foot_x"  # the column over which it runs
     source: Annotated[str, Field(validation_alias=_of_candidate("source"))]
     length: Annotated[float, Field(gt=0, validation_alias=_of_candidate("beam", "length"))]
     stations: Annotated[int, Field(gt=0, validation_alias=_of_candidate("stations"))]
@@ -89,8 +90,9 @@ class RunRecord(BaseModel):
 
     @property
     def snap_off(self) -> float | None:
-        """By how much the snap-offs differ [L]; None unless both sweeps have one."""
-        return None if self.apart is None else self.apart / self.length
+        """By how much the snap-offs differ [L, rad]; None unless both sweeps have one."""
+        size = 1.0 if self.running == "clamp_angle" else self.length
+        return None if self.apart is None else self.apart / size
 
     @property
     def seconds_a_station(self) -> float | None:
@@ -109,7 +111,7 @@ class EngineOutcome:
     tuned: str = ""  # what was set for it, as it says itself
     trouble: str | None = None  # why there are no readings
     rms: dict[str, float] | None = None  # from the closed form's readings
-    snap_off_apart: float | None = None  # less that of the closed form [L]
+    snap_off_apart: float | None = None  # less that of the closed form [L, rad]
     seconds_a_station: float | None = None  # of processor time
     agrees: bool = False
     likely: str = ""  # why it disagrees, or why stations are not to be trusted

@@ -95,7 +95,7 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
             run.beam,
             str(run.settings.get("segments", "?")),
             *(short(run.rms[name]) if name in run.rms else "" for name in components),
-            short(run.snap_off),
+            short(run.snap_off, " rad" if run.running == "clamp_angle" else ""),
             "none" if run.phases_right is None else percent(run.phases_right),
             "not measured" if run.budget is None else _largest_part(run.budget),
             "not measured" if run.budget is None else _left(run.budget),

@@ -99,7 +99,7 @@ def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
     return replace(
         one,
         rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
-        snap_off_apart=None if apart is None else apart / found.reference.beam.length,
+        snap_off_apart=None if apart is None else apart / found.reference.running_unit[0],
         seconds_a_station=_seconds_a_station(found.candidate),
         agrees=found.agrees,
         likely="; ".join(_causes(found)),

@@ -20,6 +20,7 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
     """Sweep at rest, each station's clamp readings the means over the distance around it."""
     if average == 0:
         return simulate_sweep(case, settings)
+    case.require_sweep("a budget in motion")
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
     found = simulate_sweep(case.between(first, last, (stations - 1) * _PARTS + 1), settings)

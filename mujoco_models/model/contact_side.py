@@ -35,6 +35,9 @@ def contact_side(model: Balance, contacts: Contacts) -> Side:
         side = load @ ((normal_x * y - normal_y * x) / np.hypot(x, y)) / load.sum()
         return Side.NEAR if side > _POKES else Side.FAR
     x, y = model.pose.seen(*np.array(model.obstacle.lowest))
+    if y < 0:  # behind the foot: how far the clamp has turned says on which side it went there
+        right, up = np.array(model.obstacle.lowest) - [model.pose.foot_x, model.pose.foot_y]
+        return Side.AHEAD if np.arctan2(-right, up) > model.pose.angle else Side.PASSED
     along, up = model.pose.seen(*axis.T)
     beside = float(np.interp(y, np.maximum.accumulate(up), along))
     return Side.AHEAD if beside > x else Side.PASSED

@@ -87,6 +87,15 @@ def test_a_beam_that_slides_far_before_it_lets_go_lets_go():
     assert away < 1e-3  # observed 2.7e-4
 
 
+def test_a_clamp_that_turns_on_leaves_the_object_behind_it():
+    """From clear of it at -1.4 rad; at 2.1 rad it is to the left of the clamp's axis once more."""
+    case = Case(Beam(natural_curvature=-0.4), parabola(1.25, 0.19), Whisk(-0.38, -1.4, 2.2, 40))
+    found = simulate_sweep(case, Settings(segments=20, contour_points=800))
+    assert set(found.table["status"]) == {"ok"}
+    assert found.table["phase"].iloc[-1] == "free"
+    assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=0.02)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_order_and_closed_form(name):
