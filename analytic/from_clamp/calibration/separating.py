@@ -8,7 +8,7 @@ import numpy as np
 from analytic.from_clamp.calibration.fit import VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured
 from analytic.problem.arrays import Floats
-from analytic.problem.clamp_path import Sweep
+from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError
 from analytic.solver.sweep import solve_sweep
@@ -84,7 +84,7 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
     """Sweeps that would be possible, as if they had been measured."""
     case, ways = fit.given, set(fit.measured.ways)
     way = case.sweep.direction
-    other = "right" if way == "left" else "left"
+    other: Direction = "right" if way == "left" else "left"
     tried = {
         f"the object {abs(by):.2g} of L {'nearer' if by < 0 else 'farther'}": (
             replace(case, profile=case.profile.raised(by * case.beam.length)),
