@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from analytic import CLAMP_READINGS, named_case, solve_sweep
+from analytic import CLAMP_READINGS, Sweep, named_case, solve_sweep
 from analytic.problem.files import write_whole
 from compare import compare
 from compare.show.document import Block, Document, Section, Table, Text, Verdict
@@ -34,7 +34,7 @@ def measured(timeout: float = 300.0) -> pd.DataFrame:
     there = [found for found in list_engines() if found.engine is not None and not found.trouble]
     for name in _CASES:
         case = named_case(name)
-        case = replace(case, sweep=replace(case.sweep, stations=_STATIONS))
+        case = replace(case, sweep=Sweep(_STATIONS))
         exact = solve_sweep(case)
         for segments in _SEGMENTS:
             unit = None

@@ -54,7 +54,7 @@ def engines(quick: bool) -> None:
     """All that are installed, past a circle; with Exudyn a figure of error against time."""
     console, case = (
         Console(),
-        replace(CASE, sweep=replace(CASE.sweep, stations=12 if quick else 200)),
+        replace(CASE, sweep=Sweep(12 if quick else 200, stop=-1.26)),
     )
     exact = solve_sweep(case)
     models = {
