@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from analytic import (
     Beam,
     Case,
+    ClampPath,
     InputError,
     Readings,
     Sweep,
@@ -118,6 +119,19 @@ def test_other_values_against_integration(natural, width, height, radius, fricti
     assert set(table["status"]) <= {"ok", "sticks", "touches again"}
     here = table["status"].isin(["ok", "sticks"])
     assert table.loc[here, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("turn", [-0.3, 0.3])
+@pytest.mark.parametrize(("friction", "stiffness"), [(0.0, np.inf), (0.2, np.inf), (0.0, 8.0)])
+def test_any_way_of_the_clamp(turn, friction, stiffness):
+    """Foot and angle change at once; observed at most 4e-13."""
+    way = ClampPath(*(np.linspace(*ends, 60) for ends in ((2.7, -1.0), (0.0, 0.1), (0.0, turn))))
+    case = Case(thin(0.5), catenary(0.5, -0.8), way, friction=friction, clamp_stiffness=stiffness)
+    table = solve_sweep(case, certified=True).table
+    assert set(table["status"]) <= {"ok", "sticks"}
+    assert table["second_contact_x"].notna().sum() > 20
+    assert table[["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
 
 
 def test_mirrored_and_in_other_units(tmp_path):
