@@ -40,7 +40,7 @@ def budget_summary(found: Budget | MotionBudget) -> Iterator[Block]:
 def _in_motion(found: MotionBudget) -> Iterator[Block]:
     yield parts_table(found)
     closes = "closes" if found.closes else "does not close"
-    yield Text(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")
+    yield Text(f"The budget {closes}; {found.blame} dominates.")
     yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
     if found.left_out:
         yield Text(f"Diverged, and left out: {', '.join(found.left_out)}.")
@@ -60,7 +60,7 @@ def parts_table(
         for name, sizes in (checks or {}).items()
     ]
     return Table(
-        f"Root mean square and uncertainty, {_RMS}",
+        f"Root mean square and uncertainty over {found.stations} stations, {_RMS}",
         ("part", *CLAMP_READINGS),
         rows,
         blamed=[i for i, name in enumerate(found.parts) if name == found.blame],
