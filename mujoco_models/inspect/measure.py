@@ -82,6 +82,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     probe = probe_of(path, thickness(model, parts))
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
     sag, weight = _sag(held, axes)
+    mass = float(model.body_mass[list(parts.chain)].sum())
     return MeasuredBeam(
         model=_model_name(model),
         foot=model.body(parts.foot).name,
@@ -105,6 +106,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, squares, damping),
+        tolerance=float(model.opt.tolerance),
+        undone=_undone(model) * period**4 / (mass * length**2),
         damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
         linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
@@ -345,6 +348,11 @@ def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
     if not joints.size:
         return ()
     return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+
+
+def _undone(model: mujoco.MjModel) -> float:
+    """What MuJoCo's solver takes for nothing: half of inertia times acceleration squared."""
+    return float(model.opt.tolerance * model.stat.meaninertia * max(1, model.nv))
 
 
 def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> float:

@@ -128,6 +128,11 @@ class MeasuredBeam(Shown):
         The first of free vibration [time].
     stable_step : float
         The longest stable time step of an integrator that is explicit in springs [time].
+    tolerance : float
+        Of MuJoCo's solver.
+    undone : float
+        Up to how much MuJoCo's solver may stop short, over mass (length / period^2)^2 and length^2:
+        its tolerance counts in the mean inertia of the whole model and in all its coordinates.
     damping_ratio : float
         Of the first vibration.
     linear : bool
@@ -177,6 +182,8 @@ class MeasuredBeam(Shown):
     period: float
     period_without_armature: float
     stable_step: float
+    tolerance: float
+    undone: float
     damping_ratio: float
     linear: bool
     medium: tuple[float, float, float]

@@ -16,7 +16,7 @@ from analytic.problem.contours.profile import Profile, of_family
 _SMALLEST, _LARGEST = 1e-3, 30.0  # of a size, over L
 _AWAY = 30.0  # of a place, over L
 _ANGULAR, _ROUND = 6.0, 1.2  # of a superellipse's exponent: nearly a rectangle, nearly a rhombus
-_KNOTS = 5  # at which a convex contour has a radius of curvature of its own
+_KNOTS = 7  # at which a convex contour has a radius of curvature of its own; two circles need them
 _GRID = 400  # intervals of slope angle, over which a convex contour is summed up
 _BESIDE = 1e-6  # rad from the axes, where a superellipse is flat or sharp
 

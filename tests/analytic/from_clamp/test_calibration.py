@@ -81,7 +81,8 @@ def test_derivatives_are_those_of_whole_sweeps():
     """Though they are taken from the states of one: 1e-4, as a cone's differences are so good."""
     cone = Beam(tip_radius=0.003, natural_curvature=-0.2)
     case = Case(cone, CIRCLE, Sweep(20, direction="right"), clamp_stiffness=8.0, friction=0.2)
-    fit = VibrissaFit(measured_under_load(solve_sweep(case), None, 3), case, [*UNKNOWNS.values()])
+    measured = measured_under_load(solve_sweep(case), (0.0, 0.0), None, 3)
+    fit = VibrissaFit(measured, case, [*UNKNOWNS.values()])
     for column, way in zip(fit.jacobian(fit.start).T, 1e-4 * np.eye(len(UNKNOWNS)), strict=True):
         whole = (fit.misses(fit.start + way) - fit.misses(fit.start - way)) / 2e-4
         np.testing.assert_allclose(column, whole, rtol=0, atol=1e-4 * np.abs(whole).max())

@@ -52,6 +52,7 @@ def test_refused(tilt):
 def test_mujoco_slips_off_there():
     """MuJoCo's own motion of a chain on a leaning foot, station by station."""
     from analytic import Case
+    from analytic.problem.poses import Pose
     from mujoco_models import Settings
     from mujoco_models.beams.protocol import FOOT
     from mujoco_models.sweep.spatial_walk import GENTLE_STEP
@@ -66,10 +67,11 @@ def test_mujoco_slips_off_there():
     place = slip_off(CIRCLE, tilt)
     for foot_x in np.linspace(0.9, place + 0.02, 30):
         walk.go_to(float(foot_x))
-    model.model.body_quat[model.model.body(FOOT).id] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
+    foot = model.model.body(FOOT).id
     lookout, out = model.lookout, []
     for ahead in (0.01, 0.004, -0.004):
-        model.move_foot(place + ahead)
+        model.move_clamp(Pose(place + ahead, 0.0, 0.0))
+        model.model.body_quat[foot] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
         for _ in range(10_000):
             moved = model.creep(GENTLE_STEP)
             lookout.follow_contact(model.contacts())
