@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.numerics.roots import zero, zeros
+from analytic.problem.along import Along
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
@@ -52,9 +53,11 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
     at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
     if not at_tip and steep[0] < -_ROUNDING:
         name, what = "clamp_angle", f"{rest.angle:.6g}"
-        if rest.angle == 0:
-            name = "beam.natural_curvature"
-            what = f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip"
+        if isinstance(rest.natural, Along):
+            name = "shape at rest, by natural curvature, weight and clamp_angle,"
+            what = f"a tip at {tip_angle:.6g} rad"
+        elif rest.angle == 0:
+            name, what = "beam.natural_curvature", f"{rest.natural:.6g}/L at the tip"
         allowed = f"such that it does not lean over the upper side of the object ({contour.label})"
         remedy = "lessen it; only the object's lower side can be touched"
         raise InputError(name, what, allowed, remedy)

@@ -75,6 +75,9 @@ class Numerics:
     facet_shift: float = 0.1
     # A contact at a slope angle nearer than this to that of a facet is on the facet [rad].
     same_facet: float = 1e-3
+    # A step in which a curved vibrissa may come to touch [L, rad]: one of 0.045 L pressed a tip
+    # that points back to another state.
+    landing_step: float = 2e-3
     # A snap-off is confirmed if the beam is carried off with the foot so far beyond the last state
     # at rest [L]: the most by which a wrong stiffness of the solver can displace it.
     confirm_step: float = 1e-4

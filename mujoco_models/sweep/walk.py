@@ -125,6 +125,9 @@ class Walk(Generic[Model]):
             if bracket:
                 trial = bracket.aim(self._p, self._follows)
             state, ended = self._near_rest(trial), False
+            if not bracket and self._lands_from_afar(trial, state):
+                step = (trial - self._p) / 2
+                continue
             if self._follows(state):
                 self._accept(trial, state)
                 bracket.leave_behind(trial, target)
@@ -150,6 +153,14 @@ class Walk(Generic[Model]):
                 return None
             if self.model.evaluations > limit:
                 return f"not at rest after {self._budget} evaluations"
+
+    def _lands_from_afar(self, p: float, state: State) -> bool:
+        """Whether a curved vibrissa comes to touch in a step so long that it may touch elsewhere.
+
+        Pressed in, it has more than one state; the sweep's is the one next to the first touch.
+        """
+        far = abs(p - self._p) > self._numerics.landing_step
+        return far and self._curved and not self._state.forces and bool(state.forces)
 
     def _onward(self, step: float, target: float) -> float:
         """A step on, or up to the target."""

@@ -182,7 +182,15 @@ def follow_from(curve: EquilibriumCurve, start: Point) -> Path:
             break
     points = _with_turns(curve, _exact(curve, points))
     z, direction = (np.array(column) for column in zip(*(p[:2] for p in points), strict=True))
-    return Path(z, direction, complete, curve.vibrissa, curve.contour)
+    path = Path(z, direction, complete, curve.vibrissa, curve.contour)
+    return path._replace(complete=complete and not _goes_over(path, reach))
+
+
+def _goes_over(path: Path, reach: tuple[float, float]) -> bool:
+    """Whether a vibrissa that is still pressed goes on to the object's upper side."""
+    last = path.z[-1]
+    pressed = bool((last[FORCES] > 0).all()) and path.snap_off == len(path.z) - 1
+    return pressed and last[0] == reach[1]
 
 
 def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:

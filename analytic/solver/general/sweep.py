@@ -9,7 +9,8 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Pose, Poses
+from analytic.problem.poses import Poses
+from analytic.problem.reach import contact_range
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
 from analytic.solver.general.chain import (
     clear_state,
@@ -24,6 +25,7 @@ from analytic.solver.general.states import Vibrissa, rates_at, states_at
 from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
+_CONTOUR = 257  # places of a contour, of which the nearest to the foot is sought
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -60,9 +62,7 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
     held = holder >= 0
     past = (p < first.p[0]) & ~held
     lost = past & (not paths[-1].complete)
-    beyond = Pose(*(values[past] for values in pose))
-    for one in objects:
-        lost[past] |= ~is_rest_clear(one, vibrissa, beyond)
+    lost[past] |= _on_it_again(objects, vibrissa, paths[-1], poses, p[past])
 
     unknown = len(paths) == 1 and not first.complete
     columns = without(columns, lost, "diverged" if unknown else "touches again")
@@ -89,6 +89,27 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         columns["phase"][here] = words["phase"]
         columns["status"][here] = np.where(found, words["status"], STATUS_NUMBER["diverged"])
     return Solved(columns, _events(paths, objects), held | lost, places[held | lost])
+
+
+def _on_it_again(
+    objects: Sequence[Contour], vibrissa: Vibrissa, last: Path, poses: Poses, p: Floats
+) -> Booleans:
+    """Where a vibrissa that has let go touches once more, and nobody knows how.
+
+    At rest it would lie in an object there, or did before and has not come out of reach since: what
+    holds it may hold it still where at rest it would not touch.
+    """
+    snap_off = last.p[last.snap_off]
+    places = np.append(p, np.nextafter(snap_off, -np.inf))
+    pose = poses.at(places)
+    clear, reached = np.ones(len(places), dtype=bool), np.zeros(len(places), dtype=bool)
+    for one in objects:
+        clear &= is_rest_clear(one, vibrissa, pose)
+        x, y = one.place(np.linspace(*contact_range(one), _CONTOUR))
+        far = np.hypot(x[:, None] - pose.foot_x, y[:, None] - pose.foot_y).min(axis=0)
+        reached |= far < 1
+    begins = places[~clear].max(initial=-np.inf)
+    return np.asarray(~clear | (reached & (places <= begins)))[:-1]
 
 
 def _holders(paths: Sequence[Path], p: Floats) -> Integers:

@@ -19,6 +19,7 @@ from analytic import (
     catenary,
     certify,
     circle,
+    ellipse,
     find_events,
     polygon,
     solve_sweep,
@@ -221,3 +222,21 @@ def test_objects_that_cannot_be(objects, said):
 def test_who_takes_one_object_says_so():
     with pytest.raises(InputError, match="number of objects = 2"):
         Case(profile=POSTS).require_sweep("this")
+
+
+def test_what_may_still_be_held_is_not_free():
+    """Found at random: MuJoCo's were held to -1.15 and -0.60, where these were "ok" and free."""
+    beam = Beam(radius=0.0070068834573061645, natural_curvature=0.7933163221936834)
+    profile = circle(0.556065, lowest=(-0.0361033, 0.362453))
+    table = solve_sweep(Case(beam, profile, Sweep(54), clamp_stiffness=22.4497)).table
+    after = table["foot_x"] < 0.86
+    assert (table.loc[after & (table["foot_x"] > -1.1), "status"] != "ok").all()
+    assert table["status"].iloc[0] == "ok"
+
+
+def test_a_tip_that_goes_over_to_the_upper_side_has_not_let_go():
+    beam = Beam(radius=0.008284962165817627, natural_curvature=1.0109904268030276)
+    profile = ellipse((0.0452535, 0.200649), lowest=(0.0, 0.765277))
+    solved = solve_sweep(Case(beam, profile, Sweep(20)))
+    assert solved.snap_off is None
+    assert set(solved.table.loc[solved.table["foot_x"] < 0.25, "status"]) == {"diverged"}
