@@ -225,13 +225,15 @@ def test_who_takes_one_object_says_so():
 
 
 def test_what_may_still_be_held_is_not_free():
-    """Found at random: MuJoCo's were held to -1.15 and -0.60, where these were "ok" and free."""
-    beam = Beam(radius=0.0070068834573061645, natural_curvature=0.7933163221936834)
-    profile = circle(0.556065, lowest=(-0.0361033, 0.362453))
-    table = solve_sweep(Case(beam, profile, Sweep(54), clamp_stiffness=22.4497)).table
-    after = table["foot_x"] < 0.86
-    assert (table.loc[after & (table["foot_x"] > -1.1), "status"] != "ok").all()
-    assert table["status"].iloc[0] == "ok"
+    """Found at random: MuJoCo's was held to -1.14, where this was "ok" and free from -0.33 on."""
+    beam = Beam(radius=0.0013937, natural_curvature=0.747222)
+    corners = [(-0.631195, 1.126974), (-0.617895, 0.893356), (-0.521281, 0.700814),
+               (0.00108, 0.451614), (0.049995, 0.453423), (0.628897, 0.940673)]  # fmt: skip
+    table = solve_sweep(Case(beam, polygon(corners), Sweep(54))).table
+    once = (table["status"] == "touches again").idxmax()
+    assert once < 5
+    assert set(table["status"][once:52]) == {"touches again"}
+    assert table["status"].iloc[-1] == "ok"  # out of reach
 
 
 def test_a_tip_that_goes_over_to_the_upper_side_has_not_let_go():
