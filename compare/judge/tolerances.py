@@ -171,7 +171,7 @@ class Tolerances(Limits):
         0.99, "two stations of 200 may fall between the two models' transitions"
     )
     transition: float = Limit(1e-2, "less than half a station of the default sweep")
-    snap_off: float = Limit(3e-3, "the rms limit times the foot's travel in the last phase")
+    snap_off: float = Limit(3e-3, "the rms limit times the way in the last phase")
     lateness: float = Limit(0.0, "at rest nothing lets go late")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
     _OF_ANY_SOURCE = frozenset({"snap_off_window", "lateness"})
