@@ -55,8 +55,8 @@ def as_html(readings: "SweepTable") -> str:
 
 def new_axes(readings: "SweepTable", figure: "Figure | None" = None) -> "list[Axes]":
     """Axes for what the clamp reads, one above the other."""
-    labels = (with_unit(label, readings.beam.si) for label in readings.panels)
-    return stacked(labels, with_unit(readings.running, readings.beam.si), figure)
+    labels = (with_unit(label, readings.beam) for label in readings.panels)
+    return stacked(labels, with_unit(readings.running, readings.beam), figure)
 
 
 def draw(readings: "SweepTable", axes: "Sequence[Axes]") -> None:

@@ -6,6 +6,8 @@ from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
 
+from analytic.problem.beam import Beam
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -13,11 +15,7 @@ if TYPE_CHECKING:
 _TILES = "display:flex;flex-wrap:wrap;gap:6px;margin:4px 0"
 _TILE = "border:1px solid #8888;border-radius:6px;padding:2px 10px"
 _WIDTH, _HEIGHT, _DPI = 6.4, 3.8, 110  # inches; dots an inch
-# By how a column's name begins: its unit in SI, and else, where length and rigidity are the beam's.
-_UNITS = {
-    "foot": ("m", "length"), "travel": ("m", "length"), "force": ("N", "force"),
-    "moment": ("N m", "force length"), "clamp_angle": ("rad", "rad"),
-}  # fmt: skip
+_SI = {"foot": "m", "travel": "m", "force": "N", "moment": "N m", "clamp_angle": "rad"}
 
 
 class Shown:
@@ -74,7 +72,7 @@ def stacked(labels: Iterable[str], below: str, figure: "Figure | None" = None) -
     return axes
 
 
-def with_unit(name: str, si: bool) -> str:
+def with_unit(name: str, beam: Beam) -> str:
     """A column's name as axes say it."""
-    units = [both[not si] for start, both in _UNITS.items() if name.startswith(start)]
-    return f"{name} [{units[0]}]"
+    units = [unit for start, unit in _SI.items() if name.startswith(start)]
+    return f"{name} [{units[0]}]" if beam.si else name

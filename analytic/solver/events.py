@@ -21,7 +21,7 @@ from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.shown import Shown, stacked, with_unit
+from analytic.problem.shown import Shown, stacked
 from analytic.problem.support import Support, check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
@@ -102,7 +102,7 @@ class Events(Shown):
         list of matplotlib.axes.Axes
             One a reading: ``force_x``, ``force_y``, ``moment_z``.
         """
-        axes = self._axes() if axes is None else axes
+        axes = stacked(CLAMP_READINGS, "foot_x") if axes is None else axes
         for ax, name in zip(axes, CLAMP_READINGS, strict=True):
             for i, (event, at) in enumerate(self._there().items()):
                 said = event.replace("_", " ")
@@ -114,11 +114,7 @@ class Events(Shown):
         return {name: at for name, at in vars(self).items() if at and math.isfinite(at.foot_x)}
 
     def _draw(self, figure: "Figure") -> None:
-        self.plot(self._axes(figure))
-
-    def _axes(self, figure: "Figure | None" = None) -> "list[Axes]":
-        labels = (with_unit(name, si=False) for name in CLAMP_READINGS)
-        return stacked(labels, with_unit("foot_x", si=False), figure)
+        self.plot(stacked(CLAMP_READINGS, "foot_x", figure))
 
     def _tiles(self) -> dict[str, object]:
         return {name: f"{at.foot_x:.5g}" for name, at in self._there().items()}
