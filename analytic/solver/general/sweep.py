@@ -26,6 +26,7 @@ from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 _CONTOUR = 257  # places of a contour, of which the nearest to the foot is sought
+_SHARES = np.linspace(0, 1, 9)  # of a vibrissa, where it may be curved
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -96,8 +97,9 @@ def _on_it_again(
 ) -> Booleans:
     """Where a vibrissa that has let go touches once more, and nobody knows how.
 
-    At rest it would lie in an object there, or did before and has not come out of reach since: what
-    holds it may hold it still where at rest it would not touch.
+    At rest it would lie in an object there. Or it did before and has not come out of reach since:
+    what holds a curved one may hold it still where at rest it would not touch. A straight one that
+    let go early leaves as it would come.
     """
     snap_off = last.p[last.snap_off]
     places = np.append(p, np.nextafter(snap_off, -np.inf))
@@ -108,7 +110,8 @@ def _on_it_again(
         x, y = one.place(np.linspace(*contact_range(one), _CONTOUR))
         far = np.hypot(x[:, None] - pose.foot_x, y[:, None] - pose.foot_y).min(axis=0)
         reached |= far < 1
-    begins = places[~clear].max(initial=-np.inf)
+    curved = vibrissa.at_rest.shape.curvature(_SHARES).any()
+    begins = places[~clear].max(initial=-np.inf) if curved else -np.inf
     return np.asarray(~clear | (reached & (places <= begins)))[:-1]
 
 
