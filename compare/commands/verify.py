@@ -4,32 +4,54 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
-from compare.commands.options import AGREES, DISAGREES, out_folder
+from compare.commands.options import AGREES, DISAGREES, flag, out_folder
 from compare.commands.output import output_folder
 
 
-def verify(out: Annotated[Path | None, out_folder("results/verify")] = None) -> int:
+def verify(
+    peers: Annotated[
+        bool, flag("--peers", "Other projects' own test cases, by their engines where installed.")
+    ] = False,
+    out: Annotated[Path | None, out_folder("results/verify")] = None,
+) -> int:
     """Hold what is computed here against what others printed, measured or derived.
 
     The exit code is 1 if any number differs by more than its stated reason makes.
     """
-    from compare.commands import terminal
-
     with output_folder(out or Path("results/verify")) as folder:
-        from pandas import DataFrame
+        return (_peers if peers else _sources)(folder)
 
-        from compare.show.html import html
-        from compare.verify import record
-        from compare.verify.page import drawn, summary, verdict, verified
 
-        rows, given = [], record.sources()
-        with terminal.progress("numbers", sum(len(one["row"]) for one in given)) as advance:
-            for row in record.verify(given):
-                rows.append(row)
-                advance()
-        found = verdict(rows)
-        terminal.show(summary(rows), found)
-        terminal.keep(folder / "report.html", html(verified(rows)))
-        terminal.keep(folder / "verify.png", drawn(rows))
-        terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
+def _sources(folder: Path) -> int:
+    from pandas import DataFrame
+
+    from compare.commands import terminal
+    from compare.show.html import html
+    from compare.verify import record
+    from compare.verify.page import drawn, summary, verdict, verified
+
+    rows, given = [], record.sources()
+    with terminal.progress("numbers", sum(len(one["row"]) for one in given)) as advance:
+        for row in record.verify(given):
+            rows.append(row)
+            advance()
+    found = verdict(rows)
+    terminal.show(summary(rows), found)
+    terminal.keep(folder / "report.html", html(verified(rows)))
+    terminal.keep(folder / "verify.png", drawn(rows))
+    terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
     return AGREES if found.good else DISAGREES
+
+
+def _peers(folder: Path) -> int:
+    from pandas import DataFrame
+
+    from compare.commands import terminal
+    from compare.show.html import html
+    from compare.verify.peers import CASES, page, summary
+
+    rows = [row for case in CASES for row in case()]
+    terminal.show(*summary(rows))
+    terminal.keep(folder / "peers.html", html(page(rows)))
+    terminal.keep(folder / "peers.csv", DataFrame([asdict(row) for row in rows]))
+    return AGREES

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from compare.show.html import html
-from docs.figures import peers
+from compare.verify import peers
 
 
 @pytest.fixture

@@ -1,27 +1,19 @@
-"""Other projects' own published cases: what they print, what their engines give here, and ours.
-
-``python -m docs.figures.peers DIR`` prints them, and writes ``peers.html`` and ``peers.csv``.
-"""
+"""Other projects' own published cases: what they print, what their engines give here, and ours."""
 
 import math
-import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
-from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-import pandas as pd
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from analytic.problem.beam import Beam
 from analytic.space.checks.rod import integrate_rod
-from compare.commands import terminal
 from compare.show.document import Document, Items, Section, Table, Verdict
-from compare.show.html import html
 from compare.verify import rods
 from mujoco_models import Settings, load_tip
 
@@ -248,12 +240,3 @@ def page(rows: Sequence[PeerRow]) -> Document:
             Section("reasons", "Why they differ", [reasons]),
         ],
     )
-
-
-if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    folder.mkdir(parents=True, exist_ok=True)
-    found = [row for case in CASES for row in case()]
-    terminal.show(*summary(found))
-    terminal.keep(folder / "peers.html", html(page(found)))
-    terminal.keep(folder / "peers.csv", pd.DataFrame([asdict(row) for row in found]))
