@@ -67,12 +67,9 @@ def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
         return
     yield _runs_table(runs)
     yield Text(
-        "Disagreements are root mean squares over the stations in contact, of each reading's "
-        "largest magnitude; so is the unexplained, of the worst reading. Both leave out the last "
-        "stretch before the snap-off, where readings grow like a square root. A budget closes if "
-        f"what is unexplained lies within the uncertainty of the parts and {short(UNRESOLVED)}, "
-        "added in quadrature, and both are small; it is undecided if they are not. Times are of "
-        "the machine that made this page.",
+        "Disagreements are rms over the stations in contact, of each reading's largest magnitude. "
+        f"A budget closes if what is unexplained is small and within its uncertainty (and "
+        f"{short(UNRESOLVED)}).",
         aside=True,
     )
 

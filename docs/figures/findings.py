@@ -14,12 +14,11 @@ from PIL import Image as Pixels
 
 from analytic import InputError
 from analytic.problem.files import write_whole
-from compare.show.document import Block, Document, Image, Section, Text
+from compare.show.document import Block, Document, Image, Text, sections
 from compare.show.runs import runs_document
-from docs.figures.markdown import markdown
+from docs.figures.markdown import MARK, markdown
 from docs.figures.methods_record import MethodsRecord, method_sentences, read_methods
 
-_MARK = "<!-- Written by `make results`: edits would be lost. -->\n"
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 
 
@@ -30,35 +29,33 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     for one in read_methods(folder):
         contents[f"methods-on-{one.case}.csv"] = _table(one)
     out.mkdir(parents=True, exist_ok=True)
-    page = write_whole(out / "README.md", (_MARK + markdown(document)).encode(errors="replace"))
+    page = write_whole(out / "README.md", (MARK + markdown(document)).encode(errors="replace"))
     return [page, *(write_whole(out / name, content) for name, content in contents.items())]
 
 
 def findings(folder: Path) -> Document:
     """What the runs in the folders of `folder` come to."""
     found = runs_document(folder)
-    *runs, made = found.sections
-    return replace(found, sections=[*runs, *_methods(read_methods(folder)), made])
+    runs, *more = [one for one in found.sections if not one.name.startswith("case-")]
+    budgets = [block for one in found.sections for block in one.blocks if _of_the_chain(block)]
+    added = sections(
+        ("budget", "Budget", budgets[:1]),  # others look alike
+        ("methods", "Methods to find the contact", _methods(read_methods(folder))),
+    )
+    return replace(found, sections=[runs, *added, *more])
 
 
-def _methods(records: list[MethodsRecord]) -> Iterator[Section]:
-    if not records:
-        return
-    blocks: list[Block] = [
-        Text(
-            "Each method takes the vibrissa for straight, its clamp for rigid and the object for "
-            "frictionless. exact: so it is; curved: natural curvature -0.2/L; tapered: a tip of "
-            "0.8 of the radius; soft-clamp: a clamp of stiffness 10 EI/L; friction: 0.2; mujoco: "
-            "readings of MuJoCo. All numbers are beside each picture, as a table (.csv)."
-        )
-    ]
+def _methods(records: list[MethodsRecord]) -> Iterator[Block]:
     for i, one in enumerate(records):
+        if not i:
+            yield Text(
+                "Each method takes the vibrissa for straight, its clamp for rigid and the object "
+                "for frictionless; here are readings of others, too. All numbers are beside each "
+                "picture, as a table."
+            )
+            yield Text(method_sentences(one), strong=f"{one.case}.")
         shows = f"What each method survives on readings of the case {one.case}"
-        blocks += [
-            *([] if i else [Text(method_sentences(one), strong=f"{one.case}.")]),
-            Image(one.folder / "methods.png", shows, one.case),
-        ]
-    yield Section("methods", "Methods to find the contact", blocks)
+        yield Image(one.folder / "methods.png", shows, one.case)
 
 
 def _table(one: MethodsRecord) -> bytes:
@@ -77,16 +74,15 @@ def _beside(document: Document) -> tuple[Document, dict[str, Path]]:
         pictures[f"{name}.png"] = block.file
         return replace(block, file=Path(f"{name}.png"))
 
-    sections = [
-        replace(section, blocks=[placed(block) for block in section.blocks if not _one_more(block)])
-        for section in document.sections
+    parts = [
+        replace(one, blocks=[placed(block) for block in one.blocks]) for one in document.sections
     ]
-    return replace(document, sections=sections), pictures
+    return replace(document, sections=parts), pictures
 
 
-def _one_more(block: Block) -> bool:
-    """Whether it is the budget of another beam than the chain, which looks alike."""
-    return isinstance(block, Image) and block.file.stem == "budget" and "chain" not in block.shows
+def _of_the_chain(block: Block) -> bool:
+    """Whether it is the picture of a chain's budget."""
+    return isinstance(block, Image) and "chain" in block.shows
 
 
 def _smaller(picture: Path) -> bytes:

@@ -16,6 +16,7 @@ from compare.show.document import (
     tiles_table,
 )
 
+MARK = "<!-- Written by `make results`: edits would be lost. -->\n"
 _MARKS = re.compile(r"[\\`*~$\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
 

@@ -34,7 +34,7 @@ def test_page(folder, tmp_path):
     assert written[1].stat().st_size < 40_000  # fifteen of them stay below 1 MB
     text = written[0].read_text(encoding="utf-8")
     assert "| catenary | chain | 40 |" in text
-    assert text.index("## catenary") < text.index("## parabola")
+    assert text.count("](budget-") == 1  # others look alike
     assert "](budget-parabola-chain.png)" in text
     assert "![What each method survives on readings of the case mine](methods-on-mine.png)" in text
     assert "mine,exact,good,0,tip,10,1,0.001" in written[3].read_text()
