@@ -33,7 +33,7 @@ NAV = {
         "compare/study/README docs/examples/rig/README docs/examples/measured/README "
         "tests/examples/README"
     ),
-    "Trust": ("compare/verify docs/examples/reference/README tests/data/README tests/bench/README"),
+    "Trust": "compare/verify docs/examples/reference/README tests/bench/README",
     "Reference": "docs/api CONTRIBUTING docs/release/README CHANGELOG",
 }
 """Pages by heading, from the top folder."""

@@ -1,4 +1,10 @@
-"""``make bench``: all that is not long, or the parts named; ``--quick`` only tries them."""
+"""``make bench``: all that is not long, or the parts named; ``--quick`` only tries them.
+
+``limits``: how far each figure is from what it cannot go below; ``ratios``: whether anything has
+become dearer, an entry of the history; ``analytic``: contacts a second, against shooting and
+collocation, and memory; ``mujoco``: time a station against segments and contour points, with the
+error; ``space``: oblique ways past files; ``stepping``: plain time stepping to the same balance.
+"""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Every committed reference value (tests/data/README.md says where they come from)."""
+"""Every committed reference value (tests/data/generate.py says where they come from)."""
 
 from pathlib import Path
 

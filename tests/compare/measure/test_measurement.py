@@ -160,7 +160,7 @@ def test_what_a_method_believes():
 
 
 def test_the_exact_cantilever():
-    """Against integration of the elastica; see tests/data/README.md."""
+    """Against integration of the elastica; see tests/data/generate.py."""
     table = pd.read_csv(DATA / "cantilever_tip_load.csv")
     found = tip_of(table["PL2_EI"].to_numpy())
     expected = table[["w_over_L", "u_over_L"]].to_numpy()
