@@ -117,7 +117,7 @@ class DartChain:
 
         A half of the vibrissa's radius is the object's, so that its corners are balls.
         """
-        places = self._places() + [-self._slide.getPosition(0) / _LENGTH, 0.0]
+        places = self._places() - [float(self._slide.getPosition(0)) / _LENGTH, 0.0]
         if isinstance(self._obstacle, Primitive):
             self._show_circle(self._obstacle, places)
         else:
