@@ -20,7 +20,7 @@ FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $
 
 .NOTPARALLEL:
 .PHONY: help install develop run test test-slow test-all trials coverage lint docs gallery wheel fuzz sweeps bench results again studies \
-  net size reference install-mujoco3 test-mujoco3 install-engines test-engines versions clean
+  net size reference install-mujoco3 test-mujoco3 test-python test-floors install-engines test-engines versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -65,8 +65,8 @@ docs: develop    ## the pages and an API reference, offline -> site/index.html
 gallery: develop ## docs/gallery/*.png, by the lines on its page
 	$(BIN)/python -m docs.gallery.make
 
-wheel: develop   ## dist/*.whl
-	$(BIN)/python -m build --wheel --no-isolation
+wheel: develop   ## dist/*.whl and *.tar.gz
+	$(BIN)/python -m build --no-isolation
 
 fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 	$(BIN)/python -m tests.fuzz.inputs $(or $(ARGS),10000 1)
@@ -120,6 +120,17 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest $(PARALLEL) $(ARGS)
 
+test-python:     ## the fast tests under another Python: PYTHON=python3.13
+	$(PYTHON) -m venv --clear .venv-python
+	.venv-python/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask]'
+	.venv-python/bin/python -m pytest $(PARALLEL) $(ARGS)
+
+test-floors:     ## the fast tests with the oldest dependencies that are allowed, whose own warnings do not count
+	$(PYTHON) -m venv --clear .venv-floors
+	sed -nE '/^dependencies/,/^]/s/^ +"([a-z0-9-]+)>=([0-9.]+).*/\1==\2.*/p' pyproject.toml > .venv-floors/floors.txt
+	.venv-floors/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-floors/floors.txt --editable '.[dev,dask]'
+	.venv-floors/bin/python -m pytest $(PARALLEL) -o filterwarnings= $(ARGS)
+
 install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras
 
 test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
@@ -134,7 +145,7 @@ versions: install install-mujoco3    ## the beams of both MuJoCo versions and th
 	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
-	rm -rf .venv .venv-mujoco3 .venv-engines .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-mujoco3 .venv-engines .venv-python .venv-floors .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	rm -rf site htmlcov .coverage* dist results/*/
 
 results/runs/%-chain/report.html: BEAM = chain

@@ -35,10 +35,12 @@ _LETTER = re.compile(r"\w")
 
 def files() -> list[Path]:
     """All kept files of text but this one and the licence, whose words are not ours."""
-    listed = subprocess.run(
-        ["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True
-    ).stdout.split("\n")
-    paths = [ROOT / name for name in listed if name and name not in ("LICENSE", "tests/words.py")]
+    listed = [str(path.relative_to(ROOT)) for path in ROOT.rglob("*")]  # as a release unpacks
+    if (ROOT / ".git").exists():
+        command = ["git", "ls-files"]
+        done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+        listed = done.stdout.splitlines()
+    paths = [ROOT / name for name in listed if name not in ("LICENSE", "tests/words.py")]
     return [path for path in paths if path.suffix in SUFFIXES and path.is_file()]
 
 

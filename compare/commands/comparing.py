@@ -131,7 +131,11 @@ def keep_comparison(
         complaint = wrench_complaint(reconstruct_space(found.candidate))
         if complaint is not None:
             terminal.print_line(f"{found.candidate.source}: {complaint}")
-    terminal.print_written(written)
+    given = isinstance(found, Comparison) and found.validation is None
+    more = (
+        "; [uncertainty] in the case says whether the disagreement means anything" if given else ""
+    )
+    terminal.print_report(written, more)
     return AGREES if found.agrees else DISAGREES
 
 

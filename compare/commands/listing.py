@@ -43,7 +43,7 @@ def _cases() -> Iterator[str]:
         if isinstance(case.sweep, Whisk):
             foot, start, stop, _ = astuple(case.sweep)
             parts.append(f"foot at {foot:g} L, its clamp turns from {start:g} to {stop:g} rad")
-        yield f"{name:18}{profile.label:40}{'; '.join(parts)}"
+        yield f"{name:18}{profile.label:42}{'; '.join(parts)}"
 
 
 def _engines() -> Iterator[str]:

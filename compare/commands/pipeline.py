@@ -88,7 +88,8 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
             terminal.print_line(line)
     elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
         _print_beside_rest(job, comparison, folder)
-    terminal.print_written(written)
+    more = "" if asked.budget else "; --budget adds what the disagreement is made of"
+    terminal.print_report(written, more)
     return comparison.agrees and possible and split.reached
 
 

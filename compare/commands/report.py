@@ -36,5 +36,5 @@ def report(
         found = write_report(folder, out, warn)
     if found.comparison is not None:
         print_comparison(found.comparison, found.parts)
-    terminal.print_written(found.path)
+    terminal.print_report(found.path)
     return AGREES if found.comparison is None or found.comparison.agrees else DISAGREES

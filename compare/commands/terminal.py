@@ -40,6 +40,12 @@ def print_written(path: Path) -> None:
     print_line(f"wrote {path}")
 
 
+def print_report(path: Path, more: str = "") -> None:
+    """Print where the report is, and what to do next."""
+    print_written(path)
+    print_line(f"Next: open it in a browser{more}.")
+
+
 @contextmanager
 def progress(what: str, total: int | None = None) -> Iterator[Callable[[], None]]:
     """Show a bar on a terminal, with the remaining time if it is known; nothing elsewhere."""

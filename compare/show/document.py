@@ -51,6 +51,12 @@ class Tile:
     note: str
 
 
+def tiles_line(found: Iterable[Tile]) -> Text:
+    """Tiles beside each other, without their notes."""
+    line = "; ".join(f"{one.name} {one.value}" for one in found)
+    return Text(f"{line[:1].upper()}{line[1:]}.")
+
+
 def tiles_table(found: Iterable[Tile]) -> Table:
     """Tiles below each other."""
     rows = [(one.name, one.value, one.note) for one in found]

@@ -26,7 +26,7 @@ from compare.show.document import (
     Text,
     Tile,
     Verdict,
-    tiles_table,
+    tiles_line,
 )
 from compare.show.figures.budget_bars import bars, convergence_picture
 from compare.show.figures.geometry import geometry
@@ -73,7 +73,7 @@ def plane_summary(comparison: Comparison) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
     yield plane_verdict(comparison)
     yield from map(Text, validation_lines(comparison))
-    yield tiles_table(plane_tiles(comparison))
+    yield tiles_line(plane_tiles(comparison))
     yield from apart_table(comparison)
 
 
@@ -104,7 +104,7 @@ def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterato
     if alike is not None:
         known = "the candidate's true ones are not known"
         if right is not None:
-            known = f"{percent(right)} of the candidate's are its true ones"
+            known = f"{percent(right)} of the candidate's rightly"
         yield Tile("phases alike", percent(alike), f"judged from both clamps; {known}")
     offset = _offset(comparison)
     if offset:
@@ -154,7 +154,6 @@ def _validation(comparison: Comparison) -> Iterator[Block]:
 
 
 def _apart(comparison: Comparison) -> Iterator[Block]:
-    yield from apart_table(comparison)
     over = _along(comparison).name
     shows = f"{{}} of both models over the {over}, and their difference"
     yield Picture(
@@ -166,6 +165,7 @@ def _apart(comparison: Comparison) -> Iterator[Block]:
         "reference, in the same unit.",
         "panels",
     )
+    yield from apart_table(comparison)
     counts = comparison.alignment.counts.items()
     counted = [(words(why), str(n)) for why, n in counts if n or why == "compared"]
     removed = [("offset of the candidate's foot", _offset(comparison) or "none")]
@@ -182,7 +182,7 @@ def _sweep(comparison: Comparison, film: Film | None) -> Iterator[Block]:
     if film is not None:
         yield film
         yield Text(
-            "Black: the reference, filled with the colour of its curvature. Dots: the candidate. "
+            "Outlined: the reference, in the colour of its curvature. Dots: the candidate. "
             "Arrow: contact force.",
             aside=True,
         )

@@ -22,7 +22,7 @@ from compare.show.document import (
     Tile,
     Turntable,
     Verdict,
-    tiles_table,
+    tiles_line,
 )
 from compare.show.figures.space import (
     both_in_space,
@@ -58,7 +58,7 @@ def spatial_document(
 def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
     yield spatial_verdict(comparison)
-    yield tiles_table(spatial_tiles(comparison))
+    yield tiles_line(spatial_tiles(comparison))
     yield from apart_table(comparison)
     yield events_table(comparison)
     if parts is not None:
