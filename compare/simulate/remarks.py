@@ -53,6 +53,8 @@ _RADIUS = 2e-3  # L; the contour that the axis feels is the radius away
 _JOINT = (
     0.05  # relative; one of twenty that is off by that moves readings by a quarter of a per cent
 )
+# GJ/EI; a cable of ten links is 0.6 per cent off at 2, 0.9 at 0.3, 2.6 at 0.1 and 48 at 0.012.
+_TORSION = 0.2
 _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
 _LEVER = 5e-3  # L; of the force's moment
 _SAG = 2e-3  # L; as a contact that is so far off
@@ -258,6 +260,12 @@ def _plane(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark(
             "note", "plane", "nothing keeps it in the plane of the sweep: where an object without "
             "friction recedes, it slips off sideways before it would let go"
+        )  # fmt: skip
+    if found.torsion < _TORSION:
+        yield Remark(
+            "fault", "torsion", f"it twists {1 / found.torsion:.2g} times as easily as it bends, "
+            "and leaves the plane of the sweep; a round rod of any material has 1 to 1.5",
+            f"make what resists the twist {0.8 / found.torsion:.2g} times as stiff"
         )  # fmt: skip
 
 

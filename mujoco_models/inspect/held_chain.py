@@ -56,6 +56,14 @@ class HeldChain(HeldModel):
         """Where the tip is, shape (3,)."""
         return np.asarray(self._world(self.tip_in_body[None], self._tip_body)[0])
 
+    def turn_from_start(self) -> Floats:
+        """How its last link is turned from the model's own first state [rad], shape (3,)."""
+        start = mujoco.MjData(self.model)
+        mujoco.mj_kinematics(self.model, start)
+        turn, (was, now) = np.empty(3), (d.xquat[self._tip_body] for d in (start, self.data))
+        mujoco.mju_subQuat(turn, now, was)  # in the axes of what it is turned from
+        return np.asarray(start.xmat[self._tip_body].reshape(3, 3) @ turn)
+
     @property
     def clamp(self) -> Floats:
         """Where the vibrissa begins: the end of its first geom that is farther from the tip.

@@ -33,6 +33,7 @@ from mujoco_models.quiet import unlogged
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
+_TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
 _WORLD = 0.999999  # cosine; along an axis of the world
 _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
 
@@ -117,6 +118,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         force=force,
         torque=torque,
         planar=_planar(held, axes[2]),
+        torsion=_torsion(held, axes[1], tip_rigidity, length),
         self_contacts=self_contacts(model, parts),
         timestep=float(model.opt.timestep),
         integrator=cast(
@@ -183,6 +185,17 @@ def _planar(held: Held, z: Floats) -> bool:
     hinges = (kinds == mujoco.mjtJoint.mjJNT_HINGE) & (across > 1 - _ALONG)
     slides_ = (kinds == mujoco.mjtJoint.mjJNT_SLIDE) & (across < _ALONG)
     return bool((hinges | slides_).all())
+
+
+def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float:
+    """GJ over EI, by the turn of its tip under a moment along it; infinite if it cannot twist."""
+    if isinstance(held, HeldRod):  # MuJoCo's flex has no torsion: its vertices do not turn
+        return math.inf
+    held.load(np.zeros(3), held.small * rigidity / length * along)
+    held.rest()
+    twist = held.turn_from_start() @ along / held.small
+    held.unload()
+    return 1 / twist if twist > _TWISTS else math.inf
 
 
 def _aside(points: Floats, direction: Floats) -> Floats:

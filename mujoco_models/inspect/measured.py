@@ -149,6 +149,9 @@ class MeasuredBeam(Shown):
         The sensors at the clamp.
     planar : bool
         Whether its joints keep it in the plane of the sweep.
+    torsion : float
+        Its torsional over its flexural rigidity, as the tip feels both; infinite if it cannot
+        twist.
     self_contacts : tuple of str
         Pairs of geoms, one of them the vibrissa's, that touch in the first state.
     timestep : float
@@ -193,6 +196,7 @@ class MeasuredBeam(Shown):
     force: Sensed | None
     torque: Sensed | None
     planar: bool
+    torsion: float
     self_contacts: tuple[str, ...]
     timestep: float
     integrator: IntegratorKind

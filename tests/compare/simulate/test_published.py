@@ -21,6 +21,10 @@ FOUND = {
     "Whisker on a magnet": ({"clamp", "contact"} | SENSORS, set(), 0.0044),
     "WhiskerFBG": ({"clamp", "gravity", "contact", "damping"}, set(), 0.0018),
     "MuJoCo's cable": ({"clamp", "gravity", "contact"}, set(), 0.0014),
+    # It twists 80 times as easily as it bends, by a modulus that inspect cannot set.
+    "Playground's cable": (
+        {"clamp", "torsion", "gravity", "contact", "damping"}, {"torsion"}, None,
+    ),
     "Tentacle": ({"clamp", "gravity", "contact", "damping"}, set(), 0.0080),
     # Ten links are 0.8 per cent off by themselves.
     "Elephant's trunk": (
@@ -71,7 +75,7 @@ def test_published_models_have_their_faults_and_no_others(name, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in FOUND if name in MODELS])
+@pytest.mark.parametrize("name", [name for name in FOUND if name in MODELS and FOUND[name][2]])
 def test_fixed_they_sweep_as_their_beam(name, tmp_path):
     _, left, most = FOUND[name]
     _, after = fixed(name, tmp_path)

@@ -38,6 +38,19 @@ def test_where_it_first_bends_shows_in_its_first_cell(tmp_path, first):
     assert found.length == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize(("torsion", "tilt"), [(0.1, 0.0), (0.8, 0.0), (0.1, 0.7)])
+def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt):
+    path = Chain().write(tmp_path)
+    bends = '<joint axis="0 0 1" stiffness="20.0"'
+    twists = f'<joint axis="0 1 0" stiffness="{20 * torsion}" damping="0.1"/>'
+    text = path.read_text().replace(bends, twists + bends)
+    turned = text.replace('name="whisker-foot"', f'name="whisker-foot" euler="{tilt} 0.3 0"')
+    path.write_text(turned)
+    found = inspect_model(path)
+    assert found.torsion == pytest.approx(torsion / found.tip_rigidity, rel=1e-5)
+    assert measured(tmp_path).torsion == np.inf
+
+
 def test_it_is_measured_in_its_own_units(tmp_path):
     found = measured(tmp_path, Chain(length=100.0, radius=0.5, rigidity=640.0))
     assert found.length == pytest.approx(100.0)
