@@ -193,7 +193,7 @@ def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float
         return math.inf
     held.load(np.zeros(3), held.small * rigidity / length * along)
     held.rest()
-    twist = held.turn_from_start() @ along / held.small
+    twist = float(held.turn_from_start() @ along) / held.small
     held.unload()
     return 1 / twist if twist > _TWISTS else math.inf
 
