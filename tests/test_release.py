@@ -15,6 +15,8 @@ CALLED = {"matplotlib": "matplotlib-base", "mujoco": "mujoco-python"}  # by cond
 def test_version_and_licence():
     assert f'version: "{PROJECT["version"]}"' in RECIPE
     assert f"version: {PROJECT['version']}\n" in CITATION
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(r"^## (.*)", changes, re.M)[1] == PROJECT["version"]
     assert f"license: {PROJECT['license']}\n" in CITATION
     assert f"license: {PROJECT['license']}\n" in RECIPE
 

@@ -20,3 +20,4 @@ def test_pages_are_short():
     counted = words.lengths()
     assert counted["README.md"] <= 700
     assert not {page: n for page, n in counted.items() if n > 900}
+    assert sum(counted.values()) <= 14_000
