@@ -54,7 +54,9 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
     if _is_mujoco(comparison):
         return f"{unknown}; `vibrissa run CASE --budget` measures the parts of a MuJoCo model"
     if comparison.candidate.source.startswith("model "):
-        return f"{unknown}; `vibrissa inspect` names the model's faults, --budget measures the parts"
+        return (
+            f"{unknown}; `vibrissa inspect` names the model's faults, --budget measures the parts"
+        )
     rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
     if comparison.candidate.source.startswith("measured"):
         return f"{unknown}; {rig}"
