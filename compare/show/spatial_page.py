@@ -117,11 +117,11 @@ def _made_of(parts: Parts | None) -> Iterator[Block]:
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:
-    yield from apart_table(comparison)
     lines, dots = comparison.reference.source, comparison.candidate.source
     shows = "Six components of both sweeps over the way of the foot, and their differences"
     caption = f"Lines: {lines}. Dots: {dots}. Below each: candidate less reference."
     yield Picture("components", {shows: partial(both_in_space, comparison)}, caption)
+    yield from apart_table(comparison)
 
 
 def _sweep(scene: SweepScene, film: Film | None) -> Iterator[Block]:
