@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from analytic import CLAMP_READINGS, PHASES
 from compare.explain.budget import Budget
 from compare.explain.motion import MotionBudget
-from compare.explain.parts import Part
 from compare.explain.suspects import Suspect
 from compare.show.document import Block, Items, Table, Text
 from compare.show.numbers import percent, short, words
@@ -51,7 +50,7 @@ def parts_table(
 ) -> Table:
     """The parts with their uncertainties, the whole, and what the closed form says of some."""
     rows: list[Sequence[str]] = [
-        (name, *(_uncertain(part) for part in parts.values()))
+        (name, *(f"{short(one.rms)} ± {short(one.uncertainty)}" for one in parts.values()))
         for name, parts in found.parts.items()
     ]
     rows.append(("disagreement", *(short(x) for x in found.disagreement.values())))
@@ -90,10 +89,6 @@ def convergence_table(found: Mapping[int, Mapping[str, float]]) -> Table:
         ("segments", *CLAMP_READINGS),
         [(str(n), *(short(rms[r]) for r in CLAMP_READINGS)) for n, rms in found.items()],
     )
-
-
-def _uncertain(part: Part) -> str:
-    return f"{short(part.rms)} ± {short(part.uncertainty)}"
 
 
 def _suspect(one: Suspect) -> str:

@@ -57,12 +57,6 @@ def tiles_line(found: Iterable[Tile]) -> Text:
     return Text(f"{line[:1].upper()}{line[1:]}.")
 
 
-def tiles_table(found: Iterable[Tile]) -> Table:
-    """Tiles below each other."""
-    rows = [(one.name, one.value, one.note) for one in found]
-    return Table("", (), rows, words=(0, 2))
-
-
 @dataclass(frozen=True)
 class Verdict:
     """What it comes to."""

@@ -177,7 +177,8 @@ def outcomes_table(
                 *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
                 short(one.snap_off_apart),
                 "none" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
-                one.trouble or "; ".join(filter(None, (_verdict(one), one.likely))),
+                one.trouble
+                or "; ".join(filter(None, ("agrees" if one.agrees else "disagrees", one.likely))),
             )
             for one in outcomes
         ]
@@ -186,10 +187,6 @@ def outcomes_table(
     head = ("sweep", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
     caption = f"Each against {reference}, relative rms"
     return _by_case(caption, head, rows, [0, len(head) - 1])
-
-
-def _verdict(one: EngineOutcome) -> str:
-    return "agrees" if one.agrees else "disagrees"
 
 
 def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:

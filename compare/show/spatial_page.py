@@ -48,7 +48,7 @@ def spatial_document(
         f"Components are in the {comparison.frame}'s frame.",
         spatial_verdict(comparison),
         spatial_tiles(comparison, parts),
-        ("budget", "What the disagreement is made of", _made_of(parts)),
+        ("budget", "What the disagreement is made of", [parts_table(parts)] if parts else []),
         ("apart", "How far apart, component by component", _apart(comparison)),
         ("sweep", "The sweep", _sweep(scene, film)),
         ("events", "Where they touch and leave", _events(comparison)),
@@ -109,11 +109,6 @@ def parts_table(parts: Parts) -> Table:
     caption = f"Root mean square of the worst component over {parts.stations} stations; signals, so"
     head = ("part", "rms", "measured by")
     return Table(f"{caption} sizes do not add up", head, rows, words=(0, 2), whole=[3])
-
-
-def _made_of(parts: Parts | None) -> Iterator[Block]:
-    if parts is not None:
-        yield parts_table(parts)
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:

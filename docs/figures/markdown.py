@@ -13,7 +13,6 @@ from compare.show.document import (
     Table,
     Text,
     Verdict,
-    tiles_table,
 )
 
 MARK = "<!-- Written by `make results`: edits would be lost. -->\n"
@@ -24,7 +23,8 @@ def markdown(document: Document) -> str:
     """The document as a page."""
     parts = [f"# {plain(document.title)}", plain(document.lead), *_lines(document.verdict)]
     if document.tiles:
-        parts += _lines(tiles_table(document.tiles))
+        rows = [(one.name, one.value, one.note) for one in document.tiles]
+        parts += _lines(Table("", (), rows, words=(0, 2)))
     for section in document.sections:
         parts.append(f"## {plain(section.title)}")
         parts += [part for block in section.blocks for part in _lines(block)]

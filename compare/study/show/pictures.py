@@ -27,10 +27,14 @@ _MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
 def axis_pictures(found: StudyResults, question: Question) -> Drawings:
     """Draw the number that answers a question over each axis by itself."""
-    cuts = {axis: lines(found, axis, question.metric) for axis in found.plain_axes}
-    return {
-        axis: partial(_over_axis, found, question, axis, cut) for axis, cut in cuts.items() if cut
-    }
+    drawn: Drawings = {}
+    for axis in found.plain_axes:
+        cut = lines(found, axis, question.metric)
+        if cut:
+            drawn[axis] = partial(_over_axis, found, question, axis, cut)
+        if sum(int(line.table["runs"].sum()) for line in cut) == len(found.done):
+            break  # every run is in it: over another axis they would be drawn again
+    return drawn
 
 
 def maps(found: StudyResults, question: Question) -> Drawings:
