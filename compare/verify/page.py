@@ -7,12 +7,13 @@ from itertools import groupby
 from matplotlib.figure import Figure
 
 from compare.show.document import Document, Picture, Section, Table, Text, Tile, Verdict
-from compare.show.style import BLUE, FAINT, GREEN, ORANGE, PAGE_WIDTH, PINK, SMALL
+from compare.show.style import BLUE, FAINT, GREEN, ORANGE, PAGE_WIDTH, PINK, SKY, SMALL
 from compare.verify.record import Row, State
 
 _COLOURS: dict[State, str] = {
     "all digits": GREEN,
     "explained": BLUE,
+    "fitted": SKY,
     "open": ORANGE,
     "differs": PINK,
 }
@@ -22,10 +23,10 @@ _LINE = 0.19  # inches
 
 def verified(rows: Sequence[Row]) -> Document:
     """All that is said of them."""
-    sources = {row.source for row in rows}
-    contact = {row.source for row in rows if row.contact}
+    sources = {row.source for row in rows if row.state in ("all digits", "explained")}
+    contact = {row.source for row in rows if row.contact} & sources
     tiles = [
-        Tile("sources", str(len(sources)), f"{len(contact)} of them on contact or whiskers"),
+        Tile("sources that agree", str(len(sources)), f"{len(contact)} on contact or whiskers"),
         *(Tile(state, str(_count(rows, state)), f"of {len(rows)} numbers") for state in _COLOURS),
     ]
     picture = Picture("verify", {_CAPTION: partial(drawn, rows)}, _CAPTION)
@@ -47,8 +48,10 @@ _CAPTION = "How far each number here is from the quoted one; 1e-16 stands for le
 _MEANING = (
     "A number agrees in all digits if ours rounds to the printed one. Explained: it does not, but "
     "the difference is no larger than what the reason on its line makes; where that is computed, "
-    "the number with it in stands there too. Open: the difference has no reason here, and is no "
-    "larger than when it was found. Differs: it is larger than that, and the exit code is 1."
+    "the number with it in stands there too. Fitted: only with a constant that was set by the "
+    "source's own numbers, which shows nothing on its own. Open: the difference has no reason "
+    "here, and is no larger than when it was found. Differs: it is larger than is stated, and the "
+    "exit code is 1."
 )
 
 
@@ -86,7 +89,7 @@ def summary(rows: Sequence[Row]) -> Table:
         digits = [row.digits for row in found]
         states = [str(_count(found, state) or "") for state in _COLOURS]
         lines.append((name, str(len(found)), f"{min(digits)} to {max(digits)}", *states))
-    head = ("source", "numbers", "digits that agree", *_COLOURS)
+    head = ("source", "numbers", "digits", *_COLOURS)
     return Table("What others printed, and what is found here", head, lines)
 
 
@@ -103,7 +106,7 @@ def drawn(rows: Sequence[Row]) -> Figure:
     ax.set_yticks(places, [f"{row.source}: {row.what}" for row in rows], fontsize=SMALL)
     ax.set_ylim(len(rows) - 0.5, -0.5)
     ax.grid(axis="x", color=FAINT, alpha=0.35, linewidth=0.6)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return figure
 
 

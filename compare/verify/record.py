@@ -12,10 +12,11 @@ from typing import Any, Literal, TypeAlias
 from compare.verify import contacts, rods
 
 FILE = Path(__file__).with_name("sources.toml")
-State: TypeAlias = Literal["all digits", "explained", "open", "differs"]
+State: TypeAlias = Literal["all digits", "explained", "fitted", "open", "differs"]
 _EDGE = 1 + 1e-9  # a number half-way between two printed ones rounds to either
 _FORMULA, _ROUNDED = 14, 5e-15  # digits that a formula has in double precision, and half the last
 
+_SHARED = "because", "state", "within"  # what a source may give for all its rows
 _MODELS: Mapping[str, Callable[..., rods.Parts]] = vars(rods) | vars(contacts)
 
 
@@ -50,7 +51,8 @@ def verify(given: Iterable[Mapping[str, Any]]) -> Iterator[Row]:
     """The rows of these sources, one after the other as they are computed."""
     for source in given:
         known: dict[str, rods.Parts] = {}
-        for row in source["row"]:
+        shared = {key: source[key] for key in _SHARED if key in source}
+        for row in ({**shared, **row} for row in source["row"]):
             arguments = {**source.get("given", {}), **row.get("at", {})}
             made = []
             for one in (arguments, {**arguments, **row.get("because", {})}):
@@ -83,10 +85,10 @@ def _judged(
     left = abs(explained[row["value"]] - theirs)  # by the reason, where it can be computed
     state: State = "differs"
     if missed <= _EDGE * last:
-        state = "all digits"
-    elif left <= max(_EDGE * last, row.get("within", source.get("within", 0.0))):
-        state = "open" if row.get("open") else "explained"
-    agree = whole if state == "all digits" else min(whole, _digits(missed / abs(theirs)))
+        state = "fitted" if row.get("state") == "fitted" else "all digits"
+    elif left <= max(_EDGE * last, row.get("within", 0.0)):
+        state = row.get("state", "explained")
+    agree = whole if missed <= _EDGE * last else min(whole, _digits(missed / abs(theirs)))
     why = row.get("why", "" if state == "all digits" else source.get("why", ""))
     return Row(
         source["name"],

@@ -22,11 +22,13 @@ def states(*models):
 
 
 def test_there_are_sources_enough():
+    """Without those that agree only by a constant set by their own numbers."""
     given = record.sources()
-    assert len(given) >= 12
-    assert sum(one.get("contact", False) for one in given) >= 6
+    counted = [one for one in given if any("state" not in {**one, **row} for row in one["row"])]
+    assert len(counted) >= 12
+    assert sum(one.get("contact", False) for one in counted) >= 6
     rows = [{**one, **row} for one in given for row in one["row"]]
-    assert all(row["why"] for row in rows if "within" in row or row.get("open"))
+    assert all(row["why"] for row in rows if "within" in row or "state" in row)
 
 
 def test_quick_sources_hold():
@@ -120,6 +122,18 @@ def test_a_stiffer_rod_differs(monkeypatch):
     assert states("self_buckling") == {"differs"}
 
 
+@pytest.mark.parametrize("quantity", ["q", "C"])
+def test_a_closed_form_off_by_a_millionth_differs(quantity, monkeypatch):
+    true = rods.span
+
+    def off(*given):
+        loaded = true(*given)
+        return loaded._replace(**{quantity: (1 + 1e-6) * getattr(loaded, quantity)})
+
+    monkeypatch.setattr(rods, "span", off)
+    assert "differs" in states("column")
+
+
 @pytest.mark.parametrize("model", ["tip_load", "column", "pressed", "elastica3d"])
 def test_a_wrong_sign_in_the_closed_form_differs(model, monkeypatch):
     for module in (rods, contacts):
@@ -134,7 +148,7 @@ def test_a_wrong_sign_in_the_closed_form_differs(model, monkeypatch):
     assert "differs" in states(model)
 
 
-@pytest.mark.parametrize("factor", [1.0001, np.nan])
+@pytest.mark.parametrize("factor", [1 + 1e-6, np.nan])
 @pytest.mark.parametrize("reading", ["force_x", "force_y", "moment_z", "contact_arc_length"])
 def test_a_wrong_reading_of_the_solver_differs(reading, factor, monkeypatch):
     true = contacts.solve_contact
