@@ -11,11 +11,9 @@ from typing import Any, Literal, TypeAlias
 
 from compare.verify import contacts, rods
 
-FILE = Path(__file__).with_name("sources.toml")
 State: TypeAlias = Literal["all digits", "explained", "fitted", "open", "differs"]
 _EDGE = 1 + 1e-9  # a number half-way between two printed ones rounds to either
 _FORMULA, _ROUNDED = 14, 5e-15  # digits that a formula has in double precision, and half the last
-
 _SHARED = "because", "state", "within"  # what a source may give for all its rows
 _MODELS: Mapping[str, Callable[..., rods.Parts]] = vars(rods) | vars(contacts)
 
@@ -42,8 +40,9 @@ class Row:
         return abs(self.ours - self.theirs) / abs(self.theirs)
 
 
-def sources(file: Path = FILE) -> list[dict[str, Any]]:
-    """What a file quotes."""
+def sources() -> list[dict[str, Any]]:
+    """All that is quoted."""
+    file = Path(__file__).with_name("sources.toml")
     return list(tomllib.loads(file.read_text(encoding="utf-8"))["source"])
 
 

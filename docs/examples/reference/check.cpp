@@ -21,6 +21,7 @@ std::vector<Row> rows(const std::string& all) {
     std::vector<Row> found;
     std::istringstream lines(all);
     for (std::string line, cell; std::getline(lines, line);) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
         std::istringstream cells(line);
         found.emplace_back();
         while (std::getline(cells, cell, ',')) found.back().push_back(cell);
@@ -62,8 +63,11 @@ int main(int count, char** words) {
         if (factors.empty() || worst <= tolerance * size) continue;
         std::nth_element(factors.begin(), factors.begin() + factors.size() / 2, factors.end());
         const double factor = factors[factors.size() / 2];
-        for (double f : factors) apart = std::max(apart, std::abs(f / factor - 1));
-        const bool alike = apart < 1e3 * tolerance, sign = std::abs(factor + 1) < 1e-3;
+        for (std::size_t i = 1; i < ours.size(); ++i)
+            if (const double a = std::atof(ours[i][j].c_str()); numeric(ours[i][j]) && a == a)
+                apart = std::max(apart, std::abs(std::atof(mine[i][j].c_str()) / factor - a) / size);
+        const double near = std::max(tolerance, 1e-3);
+        const bool alike = apart <= near, sign = std::abs(factor + 1) <= near;
         std::cout << ours[0][j] << (alike ? sign ? ": wrong sign" : ": wrong unit" : ": off by ");
         if (!alike) std::cout << worst / size;
         else if (!sign) std::cout << ", " << factor << " times";

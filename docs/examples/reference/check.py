@@ -41,8 +41,9 @@ def check(table: Path, mine: Path, tolerance: float = 1e-6) -> list[str]:
         worst = max((abs(a - b) for a, b in pairs), default=0.0)
         if worst > tolerance * size:
             factor = median(b / a for a, b in pairs if abs(a) > 1e-3 * size)
-            alike = all(abs(factor * a - b) <= 1e-3 * size * abs(factor) for a, b in pairs)
-            wrong = "wrong sign" if math.isclose(factor, -1, rel_tol=1e-3) else "wrong unit"
+            near = max(tolerance, 1e-3)
+            alike = all(abs(factor * a - b) <= near * size * abs(factor) for a, b in pairs)
+            wrong = "wrong sign" if math.isclose(factor, -1, rel_tol=near) else "wrong unit"
             found.append(f"{name}: {wrong if alike else 'off'}, {factor:g} times, {worst:.1e}")
     return found
 
