@@ -11,6 +11,8 @@ from analytic.problem.numbers import within
 from analytic.problem.readings import Readings
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
+_ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
+_SURELY = 1e-6  # of it: no zero is known better
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
 SAMPLES = 400  # of the noise, a station
@@ -82,6 +84,17 @@ def checked_noise(noise: object, columns: tuple[str, ...] = SENSED) -> dict[str,
             raise InputError("noise", repr(name), f"of {', '.join(columns)}")
     remedy = "it is in the column's unit"
     return {name: within(f"noise of {name}", x, 0.0, remedy=remedy) for name, x in noise.items()}
+
+
+def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
+    """What each clamp reading's zero is known to, by a rig's free stretches or as a share of sizes.
+
+    Shape (3,), in the reading's unit.
+    """
+    known = readings.provenance.get("zero_uncertainty", {})
+    shares = zip(CLAMP_READINGS, _ZERO * sizes, strict=True)
+    stated = np.array([known.get(name, share) for name, share in shares], dtype=float)
+    return np.maximum(stated, _SURELY * sizes)
 
 
 def covering(misses: Floats, axis: int) -> Floats:

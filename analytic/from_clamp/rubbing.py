@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.from_clamp.contact import SweptVibrissa, dimensionless
 from analytic.from_clamp.correlated import estimate
-from analytic.from_clamp.noise import checked_noise, largest, reading_noise
+from analytic.from_clamp.noise import checked_noise, largest, reading_noise, zero_uncertainty
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, units
@@ -20,7 +20,6 @@ _CLEARLY = 5.0  # standard deviations; a contact so far short of the tip is one 
 _DOUBLE_SIDED_95 = 1.959964
 _BESIDE = 3  # stations to either side, whose variances are alike
 _LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so much
-_ZERO = 1e-3  # of it: what a sensor's zero is known to
 _STEP = 0.1  # of a standard deviation, for a derivative
 _MOST = 0.999  # sine of the friction angle: 22
 
@@ -76,7 +75,7 @@ def estimate_friction(
     FrictionFound
         The mean, weighted by what the noise does to each station. If the stations scatter more than
         the noise explains, or alike, the uncertainty grows with that; the zero of each reading
-        counts as known to 0.1 % of its largest magnitude.
+        counts as known as in `calibrate`.
 
     Raises
     ------
@@ -95,7 +94,8 @@ def estimate_friction(
             far = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
             tangent = far & readings.trusted
         sensed = dimensionless(readings)
-        zero = _ZERO * np.array([largest(values) for values in sensed[1:]])
+        sizes = np.array([largest(readings.values(name)) for name in CLAMP_READINGS])
+        zero = zero_uncertainty(readings, sizes) / units(readings.beam, CLAMP_READINGS)
         found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
         coefficient = found.coefficient
     return found

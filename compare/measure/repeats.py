@@ -10,6 +10,7 @@ from scipy.stats import median_abs_deviation
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.correlated import estimate
+from analytic.from_clamp.noise import zero_uncertainty
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.problem.arrays import Floats
 from compare.sense.noise import scales
@@ -17,7 +18,7 @@ from compare.sense.noise import scales
 _STEPS = 4  # median steps of the foot that are averaged
 _FEWEST = 10  # such averages
 _SLOPES = [f"{name}_slope" for name in CLAMP_READINGS]
-_ZERO = 1e-3  # of a reading's largest magnitude: what its zero, and the slope of it, are known to
+_OF_ONE_PASS = ("pass", "dropped", "rows", "zero_uncertainty")  # of its provenance
 _TOUCHING = 0.02  # of a reading's largest magnitude
 _NEXT_TO_SNAP_OFF = 0.03  # of the loaded travel, where readings grow without bound
 _UNLIKE = 8.0  # times the median scatter, and ...
@@ -63,7 +64,7 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         pd.DataFrame(mean, columns=list(SENSED)),
         passes[0].beam,
         f"measured, mean of {len(passes)} passes",
-        {name: x for name, x in provenance.items() if name not in ("pass", "dropped", "rows")},
+        {name: x for name, x in provenance.items() if name not in _OF_ONE_PASS},
     )
     # What the passes are away from the mean is averaged, not they: it is nearly straight.
     order = np.argsort(mean[:, 0])
@@ -81,12 +82,13 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     seen = [median_abs_deviation(np.diff(x, axis=0), axis=0) for x in away / scale]
     known = max(1e-12, float(np.median(seen)))
     unit, along = scale * known, np.linspace(-1, 1, stations)[:, None, None]
+    zeros = [zero_uncertainty(one, scale) for one in passes]
     zero = np.broadcast_to(np.eye(3), (stations, 3, 3))
     found = estimate(
         (away / unit).reshape(-1, 3),
         (-slopes / unit).reshape(-1, 3, 1),
         np.tile(np.concatenate([zero, along * zero], axis=2), (count, 1, 1)),
-        np.full(6, _ZERO / known),
+        np.tile(np.sqrt(np.mean(np.square(zeros), axis=0)) / unit, 2),
         rows=[stations] * count,
     )
     shifts = consistency(found.by_pass)

@@ -58,11 +58,6 @@ class Pass:
         return f"Pass({self.name} to the {self.direction}: {self.kept} of {self.rows} rows)"
 
 
-def read_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
-    """All passes in files, and in the files of folders; refused if one cannot be used."""
-    return usable(look_at_passes(sources, rig))
-
-
 def usable(passes: list[Pass]) -> list[Pass]:
     """The passes, none of which has a fault."""
     for one in passes:
@@ -156,6 +151,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     before = values
     zero, drift = np.full((2, len(CLAMP_READINGS)), np.nan)
     taken, free, fault = np.full_like(values, np.nan), np.zeros(len(foot_x), dtype=bool), None
+    known: Floats | None = None
     try:
         check_channels(np.stack([raw.values(reading) for reading in CLAMP_READINGS]), name)
         check_ahead(foot_x, values, name)
@@ -164,13 +160,15 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             free = np.any([*stated.values()], axis=0)
             for which, here in stated.items():
                 check_free(which, getattr(rig.passes, which), foot_x, values, here, name)
-            zero, drift, taken = _zero(foot_x, values, stated, name)
+            zero, drift, taken, known = _zero(foot_x, values, stated, name)
             values = values - taken
             check_drift(drift, values, name)
     except InputError as error:
         fault = error
     table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
+    if known is not None:
+        provenance["zero_uncertainty"] = dict(zip(CLAMP_READINGS, known.tolist(), strict=True))
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
     check_size("pass", readings)
     of_zero, of_drift = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
@@ -204,9 +202,13 @@ def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
 
 def _zero(
     foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
-) -> tuple[Floats, Floats, Floats]:
-    """Zero and drift of each reading, and the line between the two stretches at every station."""
-    means, places = [], []
+) -> tuple[Floats, Floats, Floats, Floats | None]:
+    """Zero and drift of each reading, the line between the two stretches, and how well it is known.
+
+    The last is a standard uncertainty; None of one stretch, which shows no drift.
+    """
+    means, places, uncertain = [], [], []
+    steps = [np.nanmin(np.diff(np.unique(row))) for row in values]  # of the converter
     for which, here in free.items():
         known = here & np.isfinite(values).all(axis=0)
         if known.sum() < _FEWEST:
@@ -218,10 +220,17 @@ def _zero(
             )
         means.append(values[:, known].mean(axis=1))
         places.append(foot_x[known].mean())
+        # Noise that remembers makes the means of blocks scatter more than white noise would.
+        blocks = np.array_split(values[:, known], _FEWEST, axis=1)
+        with np.errstate(over="ignore"):  # such numbers are refused below
+            between = np.std([x.mean(axis=1) for x in blocks], axis=0, ddof=1) / np.sqrt(_FEWEST)
+            white = values[:, known].std(axis=1, ddof=1) / np.sqrt(known.sum())
+        uncertain.append(np.max([between, white, np.array(steps) / np.sqrt(12)], axis=0))
     drift = means[-1] - means[0]
     way = places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
-    return means[0], drift, means[0][:, None] + drift[:, None] * share
+    line = means[0][:, None] + drift[:, None] * share
+    return means[0], drift, line, np.max(uncertain, axis=0) if len(uncertain) > 1 else None
 
 
 def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
-from compare.read.passes import read_passes
+from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from tests.compare.command import vibrissa
 from tests.documentation.blocks import ROOT, blocks
@@ -22,7 +22,7 @@ MADE = runpy.run_path(str(EXAMPLE / "make_data.py"))
 
 @pytest.fixture(scope="module")
 def passes():
-    return read_passes([EXAMPLE / "data"], read_rig(EXAMPLE / "rig.toml"))
+    return usable(look_at_passes([EXAMPLE / "data"], read_rig(EXAMPLE / "rig.toml")))
 
 
 @pytest.fixture
@@ -137,7 +137,7 @@ def flawed(folder, old, new, name="rig.toml"):
 def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
     flawed(folder, old, new)
     with pytest.raises(InputError, match=why) as found:
-        read_passes([folder / "data"], read_rig(folder / "rig.toml"))
+        usable(look_at_passes([folder / "data"], read_rig(folder / "rig.toml")))
     assert "\n" not in str(found.value)
 
 

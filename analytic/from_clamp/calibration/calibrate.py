@@ -41,7 +41,6 @@ _ENOUGH = 4000  # stations of which a fit is sought
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
 _ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
-_ZERO = 1e-3  # of a reading's largest magnitude: what a sensor's zero is known to
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
 
@@ -150,8 +149,9 @@ def calibrate(
     The closed form's readings are fitted to the measured ones by least squares, each weighed by its
     noise, over the stations under load; not next to the snap-off, where readings grow without
     bound. The intervals are those of the linearised fit, for noise that may remember
-    (`analytic.from_clamp.correlated`), with the zero of each reading known to 0.1 % of its largest
-    magnitude and the foot's jitter, if it shows. Of several passes each has a zero of its own, and
+    (`analytic.from_clamp.correlated`), with the zero of each reading known as well as the free
+    stretches of a rig's pass say, else to 0.1 % of its largest magnitude, and the foot's jitter,
+    if it shows. Of several passes each has a zero of its own, and
     a slope of it over the pass, known as well.
 
     Parameters
@@ -205,7 +205,7 @@ def calibrate(
     alike_most = np.abs(covariance / np.outer(deviations, deviations) - np.eye(len(names))).max()
     hidden = None
     if alike_most > _ALIKE:
-        hidden = undistinguished(fit, numbers, covariance, _zero(fit.measured))
+        hidden = undistinguished(fit, numbers, covariance)
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
         _check_inside(name, number, fit.sought(numbers))
         if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
@@ -320,20 +320,19 @@ def _knowing_the_noise(
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
     measured = fit.measured
-    zero = _zero(measured)
     nuisances = fit.whitening
     if len(measured.rows) > 1:
         along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
         nuisances = np.concatenate([nuisances, along[:, None, None] * nuisances], axis=2)
-    uncertain = np.tile(zero, nuisances.shape[2] // len(zero))
+    uncertain = np.tile(measured.zero, nuisances.shape[2] // len(CLAMP_READINGS))
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
         for kind, column in zip(fit.kinds, jacobian.T, strict=True):
             if not column.any():
                 allowed = "something that the readings depend on"
                 raise InputError("unknowns", kind.called, allowed, "leave it out")
-        by_number = jacobian.reshape(-1, len(zero), len(numbers))
-        left = -fit.misses(numbers).reshape(-1, len(zero))
+        by_number = jacobian.reshape(-1, len(CLAMP_READINGS), len(numbers))
+        left = -fit.misses(numbers).reshape(-1, len(CLAMP_READINGS))
         found = estimate(left, by_number, nuisances, uncertain, least, rows=measured.rows)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)
@@ -341,11 +340,6 @@ def _knowing_the_noise(
             break
         numbers = moved
     return numbers, replace(found, by_pass=by_pass)
-
-
-def _zero(measured: Measured) -> Floats:
-    """What the zeros of the readings are known to."""
-    return np.asarray(_ZERO * np.abs(measured.readings).max(axis=1))
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.from_clamp.noise import checked_noise, largest, reading_noise
+from analytic.from_clamp.noise import checked_noise, largest, reading_noise, zero_uncertainty
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction
@@ -28,6 +28,7 @@ class Measured:
     readings: Floats  # shape (3, n); Force and moment at the clamp
     spread: Floats  # shape (4,); Standard deviation of the foot position and of the three readings
     rows: tuple[int, ...]  # how many stations each pass has
+    zero: Floats  # shape (3,); standard uncertainty of the zero of each reading
 
     @classmethod
     def together(cls, passes: Sequence["Measured"]) -> "Measured":
@@ -37,6 +38,7 @@ class Measured:
             np.concatenate([one.readings for one in passes], axis=1),
             np.sqrt(np.mean([one.spread**2 for one in passes], axis=0)),
             tuple(n for one in passes for n in one.rows),
+            np.sqrt(np.mean([one.zero**2 for one in passes], axis=0)),
         )
 
     @property
@@ -64,7 +66,7 @@ class Measured:
     def at(self, kept: Booleans) -> "Measured":
         """Some of the stations."""
         rows = tuple(int(kept[one].sum()) for one in self.passes)
-        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread, rows)
+        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread, rows, self.zero)
 
 
 def check_size(readings: Readings, case: Case) -> None:
@@ -107,7 +109,8 @@ def measured_under_load(
         remedy = "sweep further or with more stations, or state less noise"
         raise InputError(name, len(order), allowed, remedy)
     found = np.stack([readings.values(n)[order] for n in CLAMP_READINGS])
-    return Measured(x[order], found, spread, (len(order),))
+    zero = zero_uncertainty(readings, np.abs(found).max(axis=1))
+    return Measured(x[order], found, spread, (len(order),), zero)
 
 
 def _kept(readings: Readings, loaded: Integers) -> Integers:

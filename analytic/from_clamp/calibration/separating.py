@@ -45,9 +45,7 @@ class Undistinguished:
             yield f"{best} too would make that {factor:.2g} times as large ({again})"
 
 
-def undistinguished(
-    fit: VibrissaFit, numbers: Floats, covariance: Floats, zero: Floats
-) -> Undistinguished:
+def undistinguished(fit: VibrissaFit, numbers: Floats, covariance: Floats) -> Undistinguished:
     """The worst direction in the space of the unknowns, and the sweeps that would shorten it."""
     values, vectors = np.linalg.eigh(covariance)
     worst = vectors[:, -1] * np.sqrt(values[-1])
@@ -59,21 +57,21 @@ def undistinguished(
         if large
     }
     known = np.linalg.inv(covariance)
-    here = _information(fit, numbers, zero)
+    here = _information(fit, numbers)
     # Memory of the noise, jitter and the like make as much less of another sweep.
     weight = np.exp((np.linalg.slogdet(known)[1] - np.linalg.slogdet(here)[1]) / len(numbers))
     rows = len(fit.measured.foot_x) / len(fit.measured.rows)
     found = {}
     for name, other in _sweeps(fit, numbers):
-        more = weight * rows / len(other.measured.foot_x) * _information(other, numbers, zero)
+        more = weight * rows / len(other.measured.foot_x) * _information(other, numbers)
         variance = vectors[:, -1] @ np.linalg.inv(known + more) @ vectors[:, -1]
         found[name] = float(np.sqrt(variance / values[-1]))
     return Undistinguished(along, dict(sorted(found.items(), key=lambda one: one[1])))
 
 
-def _information(fit: VibrissaFit, numbers: Floats, zero: Floats) -> Floats:
+def _information(fit: VibrissaFit, numbers: Floats) -> Floats:
     """Inverse covariance of the numbers by white noise, the zero being known to so much."""
-    jacobian = fit.jacobian(numbers)
+    jacobian, zero = fit.jacobian(numbers), fit.measured.zero
     nuisances = fit.whitening.reshape(-1, len(zero))
     cross = nuisances.T @ jacobian
     inner = nuisances.T @ nuisances + np.diag(1 / zero**2)
@@ -107,6 +105,7 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
                 readings,
                 fit.measured.spread,
                 (len(table),),
+                fit.measured.zero,
             )
             yield name, VibrissaFit(measured, replace(changed, sweep=sweep), fit.kinds)
         except (InputError, ArithmeticError, ValueError):

@@ -296,6 +296,23 @@ def test_passes_that_differ_by_noise_alone_are_called_so():
 READINGS = solve_sweep(SOFT)
 
 
+def test_a_zero_that_is_known_better_makes_a_narrower_interval():
+    """Known to 0.1 % without a word; a rig's free stretches may say more, or less."""
+    readings, noise = with_noise(READINGS, 0.002, np.random.default_rng(4))
+    sizes = {n: np.abs(READINGS.values(n)).max() for n in ("force_x", "force_y", "moment_z")}
+    widths = []
+    for share in (1e-5, None, 1e-2):
+        stated = (
+            {}
+            if share is None
+            else {"zero_uncertainty": {n: float(share * x) for n, x in sizes.items()}}
+        )
+        known = replace(readings, provenance={**readings.provenance, **stated})
+        one = calibrate(known, SOFT, ["flexural_rigidity"], noise).found["flexural_rigidity"]
+        widths.append(one.highest - one.lowest)
+    assert 1.2 * widths[0] < widths[1] < widths[2]
+
+
 def changed(**columns) -> Readings:
     return replace(READINGS, table=READINGS.table.assign(**columns))
 

@@ -6,7 +6,7 @@ import pytest
 
 from analytic import named_case, solve_sweep
 from compare.commands import terminal
-from compare.read.passes import read_passes
+from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from compare.show.budgets import budget_summary
 from compare.show.passes import passes_summary
@@ -23,7 +23,9 @@ def methods():
 
 
 def passes():
-    terminal.show(*passes_summary(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), []))
+    terminal.show(
+        *passes_summary(usable(look_at_passes([RIG / "data"], read_rig(RIG / "rig.toml")), []))
+    )
 
 
 def budget():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
-from compare.read.passes import look_at_passes, read_passes
+from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from tests.compare.command import vibrissa
 
@@ -51,8 +51,32 @@ def rig(folder, change=lambda x: x, before=0.2, after=0.2, kind="white", seed=0)
 @pytest.mark.parametrize("kind", ["white", "walk"])
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_and_drift_are_no_nonsense(tmp_path, kind, seed):
-    (one,) = read_passes(*rig(tmp_path, kind=kind, seed=seed))
+    (one,) = usable(look_at_passes(*rig(tmp_path, kind=kind, seed=seed)))
     assert one.fault is None
+
+
+@pytest.mark.parametrize("kind", ["white", "walk"])
+def test_a_zero_is_handed_on_with_its_uncertainty(tmp_path, kind):
+    """In the middle of the pass the line of two stretches has 1/sqrt(2) of the error of one."""
+    size, errors = np.abs(exact()[1:]).max(axis=1), []
+    for seed in range(12):
+        (one,) = usable(look_at_passes(*rig(tmp_path, kind=kind, seed=seed)))
+        middle = exact().shape[1] // 2
+        stated = np.array([*one.readings.provenance["zero_uncertainty"].values()])
+        line = size * (0.05 + 0.03 * middle / (exact().shape[1] - 1))
+        errors.append((one.taken[:, middle] - line) / stated)
+    assert 0.1 < np.mean(np.square(errors)) < (1.2 if kind == "white" else np.inf)
+
+
+def test_a_converter_that_does_not_move_knows_its_zero_to_a_step(tmp_path):
+    step = 0.02 * np.abs(exact()[1:]).max(axis=1, keepdims=True)
+
+    def rounded(values):
+        return np.vstack([values[:1], np.round(values[1:] / step) * step])
+
+    (one,) = usable(look_at_passes(*rig(tmp_path, rounded)))
+    stated = np.array([*one.readings.provenance["zero_uncertainty"].values()])
+    assert np.all(stated >= 0.99 * step[:, 0] / np.sqrt(12))
 
 
 def saturated(values):
@@ -90,7 +114,7 @@ def clock_back(values):
 )  # fmt: skip
 def test_nonsense_is_refused(tmp_path, change, stretches, why):
     with pytest.raises(InputError, match=why) as found:
-        read_passes(*rig(tmp_path, change, *stretches))
+        usable(look_at_passes(*rig(tmp_path, change, *stretches)))
     assert "\n" not in str(found.value)
 
 
