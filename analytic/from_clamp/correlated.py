@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import logsumexp, softmax
 
 from analytic.problem.arrays import Floats
 
@@ -82,23 +82,13 @@ def estimate(
 ) -> Estimated:
     """The numbers that explain readings best, whatever their noise remembers.
 
-    Parameters
-    ----------
-    readings : array, shape (n, channels)
-        In order, over their noise as far as that is known; one pass after the other.
-    by_number : array, shape (n, channels, k)
-        Their derivatives by the numbers sought.
-    nuisances : array, shape (n, channels, z)
-        The same by what else may be off in each pass on its own, as a sensor's zero.
-    uncertain : array, shape (z,)
-        The standard uncertainty of that.
-    least : float
-        Intervals are no narrower than white noise of this standard deviation makes them.
-    seed : int
-        Of the draws.
-    rows : sequence of int, optional
-        How many stations each pass has; by default all are of one. Noise of one pass does not
-        remember that of another, but is of one kind in all.
+    `readings`, shape (n, channels), are in order, one pass after the other, over their noise as far
+    as that is known; `by_number` (n, channels, k) are their derivatives by the numbers sought,
+    `nuisances` (n, channels, z) those by what else may be off in each pass on its own, as a
+    sensor's zero, and `uncertain` (z,) is the standard uncertainty of that. Intervals are no
+    narrower than white noise of the standard deviation `least` makes them. `rows` says how many
+    stations each pass has, by default all are of one: noise of one pass does not remember that of
+    another, but is of one kind in all.
     """
     known = by_number.shape[2]
     rows = [len(readings)] if rows is None else rows
@@ -120,7 +110,9 @@ def estimate(
     # The noise is what each pass's own numbers leave: passes that differ are no noise.
     left, logarithm = _without_nuisances(normal, 0)
     freedom = len(readings) - len(rows) * int(np.sum(prior[:-1] == 0))
-    square, likely = _likely(left.sum(axis=0), root[:, None] + logarithm.sum(axis=0), freedom)
+    determinants = root[:, None] + logarithm.sum(axis=0)
+    square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
+    likely = softmax(weights, axis=0)
     systems = np.diag(prior) + np.zeros((len(rows), _DRAWS, 1, 1))
     draw = np.random.default_rng(seed)
     for channel in range(readings.shape[1]):
@@ -135,7 +127,8 @@ def estimate(
     shared, logarithm = _without_nuisances(normal, known)
     unexplained = np.append(-together[0], 1.0)
     left = unexplained @ shared.sum(axis=0) @ unexplained
-    likelihood = _likelihood(left, root[:, None] + logarithm.sum(axis=0), len(readings))
+    determinants = root[:, None] + logarithm.sum(axis=0)
+    _, weights = _likely(left, determinants, len(readings))
     size = sizes[:known]
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
@@ -145,7 +138,7 @@ def estimate(
         *scaled(together),
         _described(likely, hum),
         tuple(scaled(one) for one in by_pass),
-        likelihood,
+        float(logsumexp(weights, axis=0).sum()),
     )
 
 
@@ -210,20 +203,11 @@ def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:
 
 
 def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, Floats]:
-    """Sums of squares and likelihoods, each shape (grid, channels)."""
-    square = np.maximum(left[..., 0, 0], freedom * _NOISELESS**2)
-    logarithms = freedom * np.log(square) + determinants
-    logarithms[1:] -= 2 * np.log(_PRIOR)
-    likely = np.exp((logarithms.min(axis=0) - logarithms) / 2)
-    return square, likely / likely.sum(axis=0)
-
-
-def _likelihood(left: Floats, determinants: Floats, stations: int) -> float:
-    """The readings' probability with the best numbers, whatever the noise is like."""
-    square = np.maximum(left, stations * _NOISELESS**2)
-    logarithms = stations * np.log(square) + determinants
-    logarithms[1:] -= 2 * np.log(_PRIOR)
-    return float(logsumexp(-logarithms / 2, axis=0).sum())
+    """Sums of squares, and logarithms of each noise's likelihood, each shape (grid, channels)."""
+    square = np.maximum(left, freedom * _NOISELESS**2)
+    logarithms = -(freedom * np.log(square) + determinants) / 2
+    logarithms[1:] += np.log(_PRIOR)
+    return square, logarithms
 
 
 def _hum(left: Floats) -> float:

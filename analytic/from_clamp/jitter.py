@@ -16,24 +16,10 @@ def foot_jitter(
 ) -> tuple[float, Floats]:
     """Standard deviation of the foot's place, and what each reading has of its own.
 
-    By the EM algorithm on differences between neighbouring stations, in which what is smooth
-    cancels. Without jitter the products of two readings' differences scatter about zero.
-
-    Parameters
-    ----------
-    left : array, shape (n, readings)
-        What a fit leaves, over some sizes.
-    slopes : array, shape (n, readings)
-        Of the readings over the foot position, over the same.
-    rows : sequence of int, optional
-        How many stations each pass has; by default all are of one.
-
-    Returns
-    -------
-    jitter : float
-        0 if it does not stand out [length].
-    own : array, shape (readings,)
-        Over the sizes.
+    The first is 0 if it does not stand out. By the EM algorithm on differences between neighbouring
+    stations, in which what is smooth cancels. Without jitter the products of two readings'
+    differences scatter about zero. Of what a fit leaves over some sizes, and the slopes over the
+    foot position over the same, each shape (n, readings); `rows` by pass, by default of one.
     """
     between = np.cumsum([len(left)] if rows is None else rows)[:-1] - 1  # passes: no steps
     steps = np.delete(np.diff(left, axis=0) / np.sqrt(2), between, axis=0)

@@ -15,6 +15,7 @@ _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if 
 _SURELY = 1e-6  # of it: no zero is known better
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
+DOUBLE_SIDED_95 = 1.959964  # standard deviations, of a normal distribution
 SAMPLES = 400  # of the noise, a station
 AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
 _COVERAGE = 0.95
@@ -94,7 +95,7 @@ def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
     known = readings.provenance.get("zero_uncertainty", {})
     shares = zip(CLAMP_READINGS, _ZERO * sizes, strict=True)
     stated = np.array([known.get(name, share) for name, share in shares], dtype=float)
-    return np.maximum(stated, _SURELY * sizes)
+    return np.asarray(np.maximum(stated, _SURELY * sizes), dtype=float)
 
 
 def covering(misses: Floats, axis: int) -> Floats:

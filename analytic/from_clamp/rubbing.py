@@ -7,7 +7,13 @@ import numpy as np
 
 from analytic.from_clamp.contact import SweptVibrissa, dimensionless
 from analytic.from_clamp.correlated import estimate
-from analytic.from_clamp.noise import checked_noise, largest, reading_noise, zero_uncertainty
+from analytic.from_clamp.noise import (
+    DOUBLE_SIDED_95,
+    checked_noise,
+    largest,
+    reading_noise,
+    zero_uncertainty,
+)
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, units
@@ -17,7 +23,6 @@ from analytic.problem.readings import Readings
 _FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
 _ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
 _CLEARLY = 5.0  # standard deviations; a contact so far short of the tip is one of Phase B
-_DOUBLE_SIDED_95 = 1.959964
 _BESIDE = 3  # stations to either side, whose variances are alike
 _LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so much
 _STEP = 0.1  # of a standard deviation, for a derivative
@@ -133,7 +138,7 @@ def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> 
     cosine_squared = 1 - mean**2
     return FrictionFound(
         float(mean / np.sqrt(cosine_squared)),
-        float(_DOUBLE_SIDED_95 * np.sqrt(known.covariance[0, 0]) / cosine_squared**1.5),
+        float(DOUBLE_SIDED_95 * np.sqrt(known.covariance[0, 0]) / cosine_squared**1.5),
         len(sine),
     )
 

@@ -149,9 +149,8 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         row -= said.scale(reading) * said.zero
     foot_x = raw.values("foot_x")
     before = values
-    zero, drift = np.full((2, len(CLAMP_READINGS)), np.nan)
+    zero, drift, known = np.full((3, len(CLAMP_READINGS)), np.nan)
     taken, free, fault = np.full_like(values, np.nan), np.zeros(len(foot_x), dtype=bool), None
-    known: Floats | None = None
     try:
         check_channels(np.stack([raw.values(reading) for reading in CLAMP_READINGS]), name)
         check_ahead(foot_x, values, name)
@@ -167,11 +166,13 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         fault = error
     table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
-    if known is not None:
-        provenance["zero_uncertainty"] = dict(zip(CLAMP_READINGS, known.tolist(), strict=True))
+    of_zero, of_drift, of_known = (
+        dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift, known)
+    )
+    if np.isfinite(known).all():
+        provenance["zero_uncertainty"] = of_known
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
     check_size("pass", readings)
-    of_zero, of_drift = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
     return Pass(
         name,
         direction,
@@ -202,35 +203,36 @@ def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
 
 def _zero(
     foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
-) -> tuple[Floats, Floats, Floats, Floats | None]:
-    """Zero and drift of each reading, the line between the two stretches, and how well it is known.
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Zero, drift, the line between the two stretches, and its standard uncertainty.
 
-    The last is a standard uncertainty; None of one stretch, which shows no drift.
+    Of one stretch, which shows no drift, that is not known.
     """
     means, places, uncertain = [], [], []
     steps = [np.nanmin(np.diff(np.unique(row))) for row in values]  # of the converter
     for which, here in free.items():
-        known = here & np.isfinite(values).all(axis=0)
-        if known.sum() < _FEWEST:
+        sound = here & np.isfinite(values).all(axis=0)
+        if sound.sum() < _FEWEST:
             raise InputError(
                 f"passes.{which}",
-                f"a stretch with {known.sum()} rows of {name}",
+                f"a stretch with {sound.sum()} rows of {name}",
                 f"one with {_FEWEST} or more",
                 "take a longer one, or leave it out",
             )
-        means.append(values[:, known].mean(axis=1))
-        places.append(foot_x[known].mean())
+        means.append(values[:, sound].mean(axis=1))
+        places.append(foot_x[sound].mean())
         # Noise that remembers makes the means of blocks scatter more than white noise would.
-        blocks = np.array_split(values[:, known], _FEWEST, axis=1)
+        blocks = np.array_split(values[:, sound], _FEWEST, axis=1)
         with np.errstate(over="ignore"):  # such numbers are refused below
             between = np.std([x.mean(axis=1) for x in blocks], axis=0, ddof=1) / np.sqrt(_FEWEST)
-            white = values[:, known].std(axis=1, ddof=1) / np.sqrt(known.sum())
+            white = values[:, sound].std(axis=1, ddof=1) / np.sqrt(sound.sum())
         uncertain.append(np.max([between, white, np.array(steps) / np.sqrt(12)], axis=0))
     drift = means[-1] - means[0]
     way = places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
     line = means[0][:, None] + drift[:, None] * share
-    return means[0], drift, line, np.max(uncertain, axis=0) if len(uncertain) > 1 else None
+    known = np.max(uncertain, axis=0) if len(free) > 1 else np.full_like(drift, np.nan)
+    return means[0], drift, line, known
 
 
 def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:

@@ -16,6 +16,7 @@ from analytic.from_clamp.calibration.unknowns import (
 )
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
+from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
 AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
 
-DOUBLE_SIDED_95 = 1.959964
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
 _NOISE_KNOWN_TO = 1.1  # times what is stated

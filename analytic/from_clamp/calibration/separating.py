@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.from_clamp.calibration.fit import VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured
+from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
@@ -16,7 +17,6 @@ from analytic.solver.sweep import solve_sweep
 _STATIONS = 60  # of a sweep that is tried
 _NEARER = 0.1  # L, by which the object is moved
 _PART = 0.1  # of the direction's largest part; smaller ones are left out
-_EXPANDED = 1.959964
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def undistinguished(fit: VibrissaFit, numbers: Floats, covariance: Floats) -> Un
     kept = np.abs(worst) > _PART * np.abs(worst).max()
     units = [kind.unit(fit.given) for kind in fit.kinds]
     along = {
-        kind.name or "offset": float(_EXPANDED * unit * part)
+        kind.name or "offset": float(DOUBLE_SIDED_95 * unit * part)
         for kind, unit, part, large in zip(fit.kinds, units, worst, kept, strict=True)
         if large
     }

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic.from_clamp.calibration.calibrate import (
-    DOUBLE_SIDED_95,
     Estimate,
     explained_by_noise,
     fitted_to_noise,
@@ -17,6 +16,7 @@ from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
 from analytic.from_clamp.calibration.unknowns import Sought
 from analytic.from_clamp.correlated import Estimated, NoiseFound
+from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.object.families import Family, families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.from_clamp.reconstruct import reconstruct, require_beam
