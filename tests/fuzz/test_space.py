@@ -15,6 +15,8 @@ from tests.fuzz.space import KINDS, main
         *(pytest.param(seed, marks=pytest.mark.trial) for seed in (105, 120)),  # the last two again
         122,  # along an edge, so slowly that the foot goes on
         2008,  # a tip that lands next to the limit of 0.12 L
+        93094,  # a vibrissa drawn off an edge, whose tip lands on a face
+        99024,  # what lands at 0.1203 L: its motion says whether it does
         92107,  # a side that comes over a corner: an edge holds it, and a face beyond its tip
     ],
 )

@@ -23,6 +23,7 @@ from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
 _FARTHEST = 0.12  # L, of the contact: what lands farther away depends on its motion
+_REACH = 0.36  # L; so far a landing is looked for
 _STEPS = 100
 _ABOVE = 1e-9  # L; a point that far outside has its nearest point on the surface
 _SLACK = 1e-9  # of the energy: rounding
@@ -31,6 +32,7 @@ _ASTRAY = 0.05  # L; what Newton's method goes so far to find is another contact
 _AHEAD = (0.0, 1e-3, 4e-3)  # L of the way: a chain may hold a little longer
 _SLOW, _ASKED = 2e-3, 8  # rad, of a step after which the closed form is asked; how often
 _HELD = 1e-3  # L; a chain that goes no farther in all that holds, others only begin to fall
+_TIP = 1e-6  # L
 _LEAST = 1e-3  # rad, rotation of a tip that is searched for
 
 
@@ -42,16 +44,30 @@ class _Step(NamedTuple):
     target: Contact  # that state
 
 
+class DependsOnMotion(Exception):  # noqa: N818  # not an error: an answer
+    """There is a state to land in, but so far away that the motion says whether it does."""
+
+
 def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
-    """The stable state of less energy to which a vibrissa goes that has lost its hold."""
+    """The stable state of less energy to which a vibrissa goes that has lost its hold.
+
+    Raises `DependsOnMotion` where that is far away.
+    """
     # No more than it had, and what the foot has done since: its step is short, but so may a
     # vibrissa be bent that little.
     limit = start.energy * (1 + _SLACK) + start.force * _apart(foot, begin)
     if isinstance(scene.body, Polyhedron):
         found = _over_faces(scene, scene.body, start, foot, limit)
         if found is not None:
-            return found if _apart(found.spot.point, start.spot.point) <= _FARTHEST else None
-    return _down(scene, start, begin, foot, limit)
+            return _within(start, found)
+    found = _down(scene, start, begin, foot, limit)
+    return None if found is None else _within(start, found)
+
+
+def _within(start: Contact, found: Contact) -> Contact:
+    if _apart(found.spot.point, start.spot.point) > _FARTHEST:
+        raise DependsOnMotion
+    return found
 
 
 def _over_faces(
@@ -63,9 +79,11 @@ def _over_faces(
     with its tip, or all along it.
     """
     point, normal, last = start.spot.point, start.spot.normal, start
+    if start.tangent and start.arc_length > 1 - _TIP:  # drawn off an edge, it goes on as a tip
+        last = start._replace(rotation=_LEAST, tangent=False)
     for _ in range(_STEPS):
         spot = body.nearest(point + _ABOVE * normal, APART)
-        if _apart(spot.point, start.spot.point) > _FARTHEST:
+        if _apart(spot.point, start.spot.point) > _REACH:
             return None
         faces, edges = body.features(spot.point)
         if last.tangent:

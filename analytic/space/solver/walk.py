@@ -11,7 +11,7 @@ from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.straight import StraightVibrissa
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
-from analytic.space.solver.hop import landing
+from analytic.space.solver.hop import DependsOnMotion, landing
 from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
@@ -76,7 +76,10 @@ class Walker(ABC, Generic[Held]):
                 at, contact, arrived = self._follow(contact, at, station)
                 if arrived:
                     break
-                landed = self._land(contact, at)
+                try:
+                    landed, elsewhere = self._land(contact, at), False
+                except DependsOnMotion:
+                    landed, elsewhere = None, True
                 if landed is not None:
                     at, contact = landed
                     continue
@@ -84,6 +87,8 @@ class Walker(ABC, Generic[Held]):
                 touch, unknown_until = self._clear_of(at)
                 if status == "ok":
                     unknown_until = at
+                elif elsewhere:
+                    unknown_until = np.inf if touch is None else touch
                 contact = None
             contacts.append(contact)
             known = contact is not None or station >= unknown_until
