@@ -50,12 +50,13 @@ def print_report(path: Path, more: str = "") -> None:
 def progress(what: str, total: int | None = None) -> Iterator[Callable[[], None]]:
     """Show a bar on a terminal, with the remaining time if it is known; nothing elsewhere."""
     console = Console(stderr=True, highlight=False)
+    if not console.is_terminal:
+        yield lambda: None
+        return
     columns = (
         TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     )  # fmt: skip
-    with Progress(
-        *columns, console=console, disable=not console.is_terminal, transient=True
-    ) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(RichText(what).markup, total=total)
         yield lambda: bar.advance(task)
 
