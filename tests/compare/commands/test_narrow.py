@@ -24,7 +24,7 @@ def methods():
 
 def passes():
     terminal.show(
-        *passes_summary(usable(look_at_passes([RIG / "data"], read_rig(RIG / "rig.toml"))))
+        *passes_summary(usable(look_at_passes([RIG / "data"], read_rig(RIG / "rig.toml"))), [])
     )
 
 
