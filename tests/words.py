@@ -35,11 +35,13 @@ _LETTER = re.compile(r"\w")
 
 def files() -> list[Path]:
     """All kept files of text but this one and the licence, whose words are not ours."""
-    listed = [str(path.relative_to(ROOT)) for path in ROOT.rglob("*")]  # as a release unpacks
     if (ROOT / ".git").exists():
         command = ["git", "ls-files"]
         done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
         listed = done.stdout.splitlines()
+    else:  # as a release unpacks, with what was installed and made since in hidden folders
+        found = (path.relative_to(ROOT) for path in ROOT.rglob("*"))
+        listed = [str(path) for path in found if not re.match(r"\.(?!ci/)|dist/|runs/", str(path))]
     paths = [ROOT / name for name in listed if name not in ("LICENSE", "tests/words.py")]
     return [path for path in paths if path.suffix in SUFFIXES and path.is_file()]
 
