@@ -5,13 +5,24 @@ from contextlib import contextmanager
 
 import mujoco
 
+from analytic.problem.errors import InputError
+
 
 @contextmanager
 def unlogged() -> Iterator[None]:
-    """Keep MuJoCo from writing its warnings to the terminal and to a file in the folder."""
+    """Keep MuJoCo from writing its warnings to the terminal and to a file in the folder.
+
+    What it refuses only while it runs, as some flexes in contact, is a fault of the model.
+    """
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda _: None)
     try:
         yield
+    except mujoco.FatalError as refused:
+        text = str(refused).strip().splitlines()[-1]
+        raise InputError(
+            "model", f"refused by MuJoCo while it runs ({text})", "one that it runs",
+            "change the model",
+        ) from refused  # fmt: skip
     finally:
         mujoco.set_mju_user_warning(before)
