@@ -4,7 +4,7 @@ The foot stands and the object moves, which is the same at rest. Springs are tor
 every step: DART's own are implicit, and its contacts push on inertia alone, so that what rests
 would depend on damping and step. The inertia is ours to choose, as nothing of it shows at rest.
 Links that are hard to turn and light to move make the springs' fastest swing only 4N/pi times as
-fast as the slowest. A polygon is what of it is near: its two nearest corners and its nearest side.
+fast as the slowest. A polygon is what of it is near: a hull of small balls.
 """
 
 from typing import Any
@@ -30,10 +30,10 @@ _FASTEST = 0.5  # of a step's own limit of stability, for the fastest swing
 # The same past corners, which are small: a link that Bullet does not see for a step must not go
 # through one.
 _FASTEST_PAST_CORNERS = 0.15
-# L, of a capsule: Bullet's search is for squares of distances to 1e-6 of the sizes.
-_LONGEST = 0.05
-_AHEAD = 20  # vertices on either side of the last one that was touched
-_AWAY = 10.0  # L; where a side is that nothing touches
+# L; of a polygon what is nearer to the contact than this. Bullet's search is for squares of
+# distances to 1e-6 of the sizes, and loses contacts of an object as large as the vibrissa.
+_CUT = 0.1
+_LONGEST = 0.05  # L, of a capsule, for the same reason
 
 
 class DartChain:
@@ -52,7 +52,7 @@ class DartChain:
         self._radii = case.radius * self.layout.thickness - self._share
         self._stiffness = _LENGTH / self.layout.compliances
         self._kept_speed = 1 - 4 * np.pi / self.period
-        self._shown = -1
+        self._window, self._centre = -1, np.full(2, np.inf)
         self._make_world()
         self._slide.setPosition(0, -_LENGTH * float(case.foot_x[0]) / case.beam.length)
         self._look_ahead()
@@ -103,57 +103,42 @@ class DartChain:
         joint = dynamics.PrismaticJointProperties()
         joint.mName, joint.mAxis = "way", np.array([1.0, 0.0, 0.0])
         self._slide, body = moved.createPrismaticJointAndBodyNodePair(None, joint)
-        if isinstance(self._obstacle, Primitive):
-            self._shapes = [_touchable(body, dynamics.SphereShape(1.0))]
-        else:
-            ball = dynamics.SphereShape(self._share * _LENGTH)
-            side = dynamics.PlaneShape(np.array([0.0, -1.0, 0.0]), 0.0)
-            self._shapes = [_touchable(body, shape) for shape in (ball, ball, side)]
+        self._shape = _touchable(body, dynamics.SphereShape(1.0))
         moved.setMobile(False)
         self._world.addSkeleton(moved)
 
-    def _look_ahead(self) -> None:
-        """Let the object be what of it is nearest to the vibrissa.
+    def _show(self, near: Floats, normal: Floats) -> None:
+        """Let the object be what it is near a place of its surface.
 
-        A half of the vibrissa's radius is the object's, so that its corners are balls.
+        A half of the vibrissa's radius is the object's, so that a polygon is a hull of balls.
         """
-        places = self._places() - [float(self._slide.getPosition(0)) / _LENGTH, 0.0]
-        if isinstance(self._obstacle, Primitive):
-            self._show_circle(self._obstacle, places)
-        else:
-            self._show_corners_and_side(self._obstacle.vertices, places)
-
-    def _show_circle(self, obstacle: Primitive, places: Floats) -> None:
-        out, normals = self._surface.outward(places)
-        normal = normals[out.argmin()]
-        if contacts := self._contacts():
-            push = np.sum([c.force[:2] for c in contacts], axis=0)
-            normal = push if push.any() else normal
         slope = np.array([np.arctan2(normal[0], -normal[1])])
-        window = obstacle.window_of(float(obstacle.place(slope)[0]))
-        if window != self._shown:
-            centre, radius = obstacle.circle(window)
-            (ball,) = self._shapes
-            ball.setShape(dartpy.dynamics.SphereShape((radius + self._share) * _LENGTH))
-            ball.setRelativeTransform(_pose(centre * _LENGTH))
-        self._shown = window
+        window = self._obstacle.window_of(float(self._obstacle.place(slope)[0]))
+        if isinstance(self._obstacle, Primitive):
+            if window != self._window:
+                centre, radius = self._obstacle.circle(window)
+                self._shape.getShape().setRadius((radius + self._share) * _LENGTH)
+                self._shape.setRelativeTransform(_pose(centre * _LENGTH))
+        elif window != self._window or np.hypot(*(near - self._centre)) > _CUT / 4:
+            self._centre = near
+            points = self._obstacle.hull(window)[:, :2]
+            polygon = points[: len(points) // 2]
+            touched = _nearest(polygon[:-1], near)  # its last corner is none of the object's
+            inside = polygon.mean(axis=0) - touched
+            kept = _cut(polygon, touched, _CUT)
+            inner = touched + _CUT * inside / np.hypot(*inside)
+            corners = np.vstack([kept, inner]) * _LENGTH
+            balls = [(self._share * _LENGTH, [x, y, 0.0]) for x, y in corners.tolist()]
+            self._shape.setShape(dartpy.dynamics.MultiSphereConvexHullShape(balls))
+        self._window = window
 
-    def _show_corners_and_side(self, vertices: Floats, places: Floats) -> None:
-        """A link may touch a vertex, or two, and a joint or the tip a side."""
-        first = max(0, self._shown - _AHEAD)
-        near = vertices[first : first + 2 * _AHEAD + 1] if self._shown >= 0 else vertices
-        apart = _from_links(near, places)
-        side, out = _nearest_side(near, places)
-        *balls, plane = self._shapes
-        nearest = apart.argsort()[:2].tolist()
-        for ball, vertex in zip(balls, nearest, strict=True):
-            ball.setRelativeTransform(_pose(near[vertex] * _LENGTH))
-        run, rise = near[side + 1] - near[side]
-        turn = float(np.arctan2(rise, run))
-        height = self._share if out < max(apart.min(), self._share) else -_AWAY
-        normal = np.array([np.sin(turn), -np.cos(turn)])
-        plane.setRelativeTransform(_pose((near[side] + height * normal) * _LENGTH, turn))
-        self._shown = first + nearest[0]
+    def _look_ahead(self) -> None:
+        """By what of the object is nearest to a joint or the tip."""
+        foot = np.array([-self._slide.getPosition(0) / _LENGTH, 0.0])
+        places = self._places() + foot
+        out, normals = self._surface.outward(places)
+        nearest = int(out.argmin())
+        self._show(places[nearest] - out[nearest] * normals[nearest], normals[nearest])
 
     def step(self, foot_x: float) -> None:
         """One of DART's, with the springs' torques, and velocities that fade."""
@@ -164,7 +149,14 @@ class DartChain:
         chain.setVelocities(self._kept_speed * chain.getVelocities())
         chain.setForces(-self._stiffness * chain.getPositions())
         self._world.step()
-        self._look_ahead()
+        contacts = self._contacts()
+        push = np.sum([c.force[:2] for c in contacts] or [[0.0, 0.0]], axis=0)
+        size = float(np.hypot(*push))
+        if size > 0:
+            near = np.mean([c.point[:2] for c in contacts], axis=0) / _LENGTH
+            self._show(near + np.array([foot_x, 0.0]), push / size)
+        else:
+            self._look_ahead()
 
     def _contacts(self) -> list[Any]:
         return list(self._world.getLastCollisionResult().getContacts())
@@ -205,24 +197,27 @@ class DartChain:
         self._look_ahead()
 
 
-def _from_links(points: Floats, places: Floats) -> Floats:
-    """How far points are from the nearest link, shape (n_points,)."""
-    links = np.diff(places, axis=0)
-    off = points[:, None] - places[:-1]
-    along = np.clip((off * links).sum(axis=2) / (links**2).sum(axis=1), 0, 1)
-    return np.asarray(np.linalg.norm(off - along[:, :, None] * links, axis=2).min(axis=1))
+def _nearest(line: Floats, place: Floats) -> Floats:
+    """The place of a line of edges that is nearest to another one."""
+    begins, ways = line[:-1], np.diff(line, axis=0)
+    along = ((place - begins) * ways).sum(axis=1) / (ways**2).sum(axis=1)
+    places = begins + np.clip(along, 0, 1)[:, None] * ways
+    return np.asarray(places[np.linalg.norm(places - place, axis=1).argmin()])
 
 
-def _nearest_side(vertices: Floats, places: Floats) -> tuple[int, float]:
-    """The side that is nearest to a joint or the tip beside it, and how far it is."""
-    sides = np.diff(vertices, axis=0)
-    length = np.hypot(*sides.T)
-    off = places[:, None] - vertices[:-1]
-    out = (off[:, :, 0] * sides[:, 1] - off[:, :, 1] * sides[:, 0]) / length
-    facing, rows = out.argmax(axis=1), np.arange(len(places))
-    along = (off * sides).sum(axis=2)[rows, facing] / length[facing] ** 2
-    out = np.where((along > 0) & (along < 1), out[rows, facing], np.inf)
-    return int(facing[out.argmin()]), float(out.min())
+def _cut(polygon: Floats, near: Floats, distance: float) -> Floats:
+    """The ends of what of its edges is within a square about a place, shape (n, 2)."""
+    begins, ways = polygon[:-1], np.diff(polygon, axis=0)
+    length = np.hypot(*ways.T)
+    along = ((near - begins) * ways).sum(axis=1) / length**2
+    reach = np.stack([along - distance / length, along + distance / length])
+    low, high = np.clip(reach, 0, 1)
+    beside = (
+        np.abs(ways[:, 0] * (near - begins)[:, 1] - ways[:, 1] * (near - begins)[:, 0]) / length
+    )
+    kept = (low < high) & (beside < distance)
+    ends = [begins[kept] + t[kept, None] * ways[kept] for t in (low, high)]
+    return np.unique(np.vstack(ends), axis=0)
 
 
 def _pose(offset: Floats, turn: float = 0.0) -> Any:  # noqa: ANN401  # DART has no types

@@ -50,8 +50,8 @@ def test_so_it_does_past_a_hexagon(turn, segments):
     turns = turn + 2 * np.pi * np.arange(6) / 6
     corners = np.column_stack([0.5 * np.cos(turns), 0.9 + 0.5 * np.sin(turns)])
     case = Case(profile=polygon(corners), sweep=Sweep(stations=15))
-    # Where a chain's link leans over a corner, by more than the sides there: one station of 15.
-    check(case, Settings(segments=segments), 2e-3, doubted=1)
+    # One station of 15 where a long link leans over a corner, by more than the sides there.
+    check(case, Settings(segments=segments), 5e-4, doubted=int((turn, segments) == (0.8, 10)))
 
 
 @pytest.mark.parametrize(
