@@ -95,10 +95,9 @@ def page(table: pd.DataFrame) -> Document:
     head = ("engine", "model", "worst rms", "trusted", "times MuJoCo", "by default")
     caption = "Each engine against the closed form, worst case"
     said = Text(
-        f"{_SEGMENTS[-1]} segments, {_STATIONS} stations of {' and '.join(_CASES)}, for PyBullet "
-        "and PhysX 30 past four circles; league.csv has each. trusted: stations that are ok. "
-        "times MuJoCo: processor time in the same run. by default: the error with the engine's "
-        "defaults, for MuJoCo in motion with its contact."
+        f"{_SEGMENTS[-1]} segments, {_STATIONS} stations of {' and '.join(_CASES)} (PyBullet and "
+        "PhysX: 30, four circles); league.csv has each. trusted: stations that are ok. times "
+        "MuJoCo: of processors. by default: with the engine's settings; MuJoCo in motion."
     )
     blocks: list[Block] = [
         said,
