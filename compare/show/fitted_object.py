@@ -4,14 +4,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from analytic import CLAMP_READINGS, FittedObject
+from analytic.space import FittedBody
+from analytic.space.from_clamp.noise import COMPONENTS
 from compare.show.document import Block, Table, Text
 from compare.show.numbers import quantity
 from compare.show.passes import consistency_line
 
 
-def object_summary(found: FittedObject) -> Iterator[Block]:
+def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
     """What a terminal shows: the parameters, and how far they are to be trusted."""
-    unit = "m" if found.case.beam.si else ""
+    unit = "m" if si else ""
     yield Table(
         f"{found.family.capitalize()}, from {found.stations} stations",
         ("found", "value", "95 % from", "to", ""),
@@ -19,14 +21,15 @@ def object_summary(found: FittedObject) -> Iterator[Block]:
             (
                 name,
                 *(f"{x:.5g}" for x in (one.value, one.lowest, one.highest)),
-                "" if name.startswith(("exponent", "log")) else unit,
+                "" if name.startswith(("exponent", "log", "axis")) else unit,
             )
             for name, one in found.found.items()
         ],
         words=(0, 4),
     )
-    widest = quantity(float(found.band["half_width"].max()), "length", found.case.beam)
-    yield Text(f"where it was touched, the contour is known to {widest} or better (95 %)")
+    if isinstance(found, FittedObject):
+        widest = quantity(float(found.band["half_width"].max()), "length", found.case.beam)
+        yield Text(f"where it was touched, the contour is known to {widest} or better (95 %)")
     if len(found.rivals) > 1:
         least = min(bic for bic, _ in found.rivals.values())
         yield Table(
@@ -38,10 +41,11 @@ def object_summary(found: FittedObject) -> Iterator[Block]:
             ],
             words=(0, 2),
         )
-    if found.passes is not None:
+    if isinstance(found, FittedObject) and found.passes is not None:
         yield Text(consistency_line(found.passes))
     yield Text(f"the fit leaves {found.misfit:.2g} times the noise")
-    for said in found.noise.said(CLAMP_READINGS):
+    names = CLAMP_READINGS if isinstance(found, FittedObject) else COMPONENTS
+    for said in found.noise.said(names):
         yield Text(f"{said}; the intervals know it")
     if not found.explains:
         yield Text(
@@ -50,15 +54,19 @@ def object_summary(found: FittedObject) -> Iterator[Block]:
         )
 
 
-def object_document(found: FittedObject) -> dict[str, Any]:
+def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
     """What ``object.json`` holds."""
-    return {
+    document: dict[str, Any] = {
         "family": found.family,
         "found": found.found,
         "explains": found.explains,
         "misfit": found.misfit,
         "stations": found.stations,
         "rivals": {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()},
+    }
+    if isinstance(found, FittedBody):
+        return document
+    return document | {
         "chi_square": None if found.passes is None else found.passes.chi_square,
         "probability": None if found.passes is None else found.passes.probability,
         "band": {name: values.tolist() for name, values in found.band.items()},

@@ -62,7 +62,7 @@ def reconstruct_space(
     """
     beam, tangent = readings.beam, readings.clamp_tangent
     require_plain("the reconstruction in space", beam)
-    clamp = _Clamp.of(readings)
+    clamp = ClampInSpace.of(readings)
     foot = clamp.foot
     units = np.repeat([beam.force_unit, beam.moment_unit], 3)
     known = component_noise(readings, noise)
@@ -158,7 +158,7 @@ def contacts_moved(
     beam = readings.beam
     deviation = np.array([noise.get(name, 0.0) for name in COMPONENTS])
     deviation = deviation / np.repeat([beam.force_unit, beam.moment_unit], 3)
-    far, _, reach = _Clamp.of(readings).at(at).samples(deviation, np.random.default_rng(seed))
+    far, _, reach = ClampInSpace.of(readings).at(at).samples(deviation, np.random.default_rng(seed))
     return np.where((reach >= 0) & (reach <= LONGEST), far * beam.length, np.nan)
 
 
@@ -183,7 +183,7 @@ def _beyond_noise(found: pd.DataFrame, name: str) -> float:
     return float(size.median()) if deviations > _EXPLAINED else 0.0
 
 
-class _Clamp(NamedTuple):
+class ClampInSpace(NamedTuple):
     """What the clamp is and feels at n stations, dimensionless."""
 
     foot: Floats
@@ -193,7 +193,8 @@ class _Clamp(NamedTuple):
     radius: float
 
     @classmethod
-    def of(cls, readings: SpatialReadings) -> "_Clamp":
+    def of(cls, readings: SpatialReadings) -> "ClampInSpace":
+        """Of a sweep."""
         beam = readings.beam
         return cls(
             readings.values(*FOOT) / beam.length,
@@ -203,7 +204,7 @@ class _Clamp(NamedTuple):
             beam.radius / beam.length,
         )
 
-    def at(self, which: Booleans | Integers) -> "_Clamp":
+    def at(self, which: Booleans | Integers) -> "ClampInSpace":
         """Some of the stations."""
         foot, force, moment = (values[which] for values in self[:3])
         return self._replace(foot=foot, force=force, moment=moment)
@@ -239,7 +240,7 @@ class _Clamp(NamedTuple):
         return far, sines, reach
 
 
-def _spread(clamp: _Clamp, deviation: Floats, seed: int) -> tuple[Floats, Floats]:
+def _spread(clamp: ClampInSpace, deviation: Floats, seed: int) -> tuple[Floats, Floats]:
     """Where 95 % of the contacts lie that noise makes of each, and the criterion's deviation."""
     count = len(clamp.foot)
     if not deviation.any():

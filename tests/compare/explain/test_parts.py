@@ -182,7 +182,10 @@ def test_a_fault_of_the_physics_is_suspected_by_its_size():
 def test_what_is_left_out():
     """Unsettled in one sweep, free in one, without a number in one, not solved with a change."""
     runs = at_rest(discretisation=SIZE)
-    status, phase = np.full(100, "ok", dtype=object), EXACT.table["phase"].to_numpy(dtype=object)
+    status, phase = (
+        np.full(100, "ok", dtype=object),
+        EXACT.table["phase"].to_numpy(object, copy=True),
+    )
     status[40], phase[50] = "unsettled", "free"
     force = runs["stiff"].values("force_x").copy()
     moment = VARIED["radius"].values("moment_z").copy()

@@ -1,0 +1,345 @@
+"""The body as a whole: that of a family which explains the clamp's six components best."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from analytic.from_clamp.calibration.calibrate import Estimate, explained_by_noise
+from analytic.from_clamp.contact import LONGEST
+from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
+from analytic.from_clamp.noise import DOUBLE_SIDED_95
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import InputError, require, unknown
+from analytic.problem.shown import Shown
+from analytic.problem.support import require_plain
+from analytic.space.from_clamp.families import Family, families
+from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
+from analytic.space.from_clamp.reconstruct import ClampInSpace
+from analytic.space.problem.bodies.body import Body, across
+from analytic.space.problem.readings import SpatialReadings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BODY_FAMILIES = ("sphere", "ellipsoid", "cylinder")
+_FEWEST = 8  # contacts
+_LEAST = 1e-9  # of the largest force or moment; readings without noise count as of so much
+_ZERO = 1e-3  # of the same: what a sensor's zero is known to
+_FAINT = 0.02  # of the largest force: where a zero that drifts looks like a contact
+_CLEAR = 4.0  # standard deviations between a contact at the tip and one before it
+_BESIDE_SLIP_OFF = 0.02  # of the loaded stations: readings grow without bound there
+_STEP = 1e-6  # of a component or a number, for a derivative
+_FARTHEST = 8.0  # standard deviations that readings are off: not where it is linearised
+_ROUNDS, _SETTLED = 60, 1e-10  # of Gauss and Newton's method; over L
+_OFF = 0.03  # L; contacts that are farther off count for less
+_KNOWN_TO = 0.5  # L; a length that is known to less is not determined
+
+
+@dataclass(frozen=True, repr=False)
+class FittedBody(Shown):
+    """A body of a family, as sweeps past it show it.
+
+    Parameters
+    ----------
+    family : str
+        ``"sphere"``, ``"ellipsoid"`` or ``"cylinder"``.
+    found : dict
+        `Estimate` by parameter: lengths in the unit of the readings; of an axis the components of
+        its unit vector.
+    body : Body
+        The body.
+    misfit : float
+        Root mean square of what the fit leaves, over the noise.
+    explains : bool
+        Whether noise alone explains that.
+    bic : float
+        Schwarz's criterion: the least of several families is the likeliest.
+    stations : int
+        How many the fit is from.
+    noise : NoiseFound
+        What of the noise remembers.
+    rivals : dict
+        `bic` and `explains` of each family that was tried.
+    """
+
+    family: str
+    found: dict[str, Estimate]
+    body: Body
+    misfit: float
+    explains: bool
+    bic: float
+    stations: int
+    noise: NoiseFound
+    rivals: dict[str, tuple[float, bool]]
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            self.family: "" if self.explains else "does not explain the readings",
+            **{
+                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
+                for name, one in self.found.items()
+            },
+            "misfit": f"{self.misfit:.3g}",
+            "stations": self.stations,
+        }
+
+    def _draw(self, figure: "Figure") -> None:
+        ax = figure.subplots()
+        names = list(self.found)
+        ends = [(one.value - one.lowest, one.highest - one.value) for one in self.found.values()]
+        values = [one.value for one in self.found.values()]
+        ax.errorbar(values, names, xerr=np.transpose(ends), fmt="o", capsize=3)
+        ax.set(title=self.family, xlabel="value, and where it lies in 95 % of all cases")
+
+
+class _Contacts(NamedTuple):
+    """The stations of one pass that count, and on which side of the tip's release they are."""
+
+    clamp: ClampInSpace
+    tip: Booleans
+    sides: Floats  # two unit vectors across the normal, shape (n, 2, 3)
+    spread: Floats  # standard deviation of the six components, shape (6,)
+
+    @property
+    def readings(self) -> Floats:
+        """Force and moment, shape (n, 6)."""
+        return np.hstack([self.clamp.force, self.clamp.moment])
+
+    def constraints(self, readings: Floats, family: Family, numbers: Floats) -> Floats:
+        """What vanishes if a vibrissa has such readings on such a body, shape (n, 6).
+
+        The contact is on the surface, the force along its normal, the contact at the tip or before
+        it without a moment, and no moment is along the clamp's tangent or the force.
+        """
+        clamp = self.clamp._replace(force=readings[:, :3], moment=readings[:, 3:])
+        found = clamp.contacts()
+        points, normals = found[:3].T, found[3:6].T
+        height, expected = family.surface(numbers, points)
+        turned = np.einsum("nik,nk->ni", self.sides, normals - expected)
+        ends = np.where(self.tip, found[6] - 1, found[7])
+        twist = clamp.moment @ clamp.tangent
+        along = (clamp.moment * normals).sum(axis=1)
+        return np.column_stack([height, turned, ends, twist, along])
+
+    def expected(self, family: Family, numbers: Floats, near: Floats) -> tuple[Floats, Floats]:
+        """The readings on a body to first order, and their derivatives by its numbers.
+
+        From readings near them: shapes (n, 6) and (n, 6, k).
+        """
+        now = self.constraints(near, family, numbers)
+        by_reading = np.empty((len(near), 6, 6))
+        for i, size in enumerate(_STEP * np.maximum(np.abs(near).max(axis=0), _STEP)):
+            step = size * np.eye(6)[i]
+            ahead, behind = (self.constraints(near + s, family, numbers) for s in (step, -step))
+            by_reading[:, :, i] = (ahead - behind) / (2 * size)
+        by_number = np.empty((len(near), 6, len(numbers)))
+        for i, step in enumerate(_STEP * np.eye(len(numbers))):
+            ahead, behind = (
+                self.constraints(near, family, numbers + s) for s in (step, -step)
+            )  # fmt: skip
+            by_number[:, :, i] = (ahead - behind) / (2 * _STEP)
+        moved = np.linalg.solve(by_reading, np.concatenate([now[:, :, None], by_number], axis=2))
+        return near - moved[:, :, 0], -moved[:, :, 1:]
+
+
+def fit_body(
+    readings: SpatialReadings | Sequence[SpatialReadings],
+    family: str = "sphere",
+    noise: Mapping[str, float] | None = None,
+) -> FittedBody:
+    """The body of a family on which the closed form explains the clamp's readings best.
+
+    Not the contact points are fitted but all six components, by what a straight vibrissa on such a
+    body has to have: contact on its surface, force along its normal, at the tip or without a moment
+    there. Intervals are of the linearised fit, for noise that may remember, and for a zero of each
+    component that is known to 0.1 % of the largest force or moment.
+
+    Parameters
+    ----------
+    readings : SpatialReadings, or a sequence of them
+        Only the nine sensed columns are used, and status; several are sweeps past one body.
+    family : str
+        ``"sphere"``, ``"ellipsoid"`` with its axes along x, y and z, ``"cylinder"`` without ends,
+        or ``"auto"``: that of the least Schwarz criterion among those that explain the readings.
+    noise : mapping, optional
+        Standard deviations of the six components by name, each in its unit. If not given, they are
+        what the readings themselves show.
+
+    Returns
+    -------
+    FittedBody
+        Parameters with intervals, and the body.
+
+    Raises
+    ------
+    InputError
+        If there is no such family, too few contacts, the vibrissa is not straight and uniform, or
+        the readings do not determine such a body; with ``"auto"`` if no family explains them.
+    """
+    if family not in (*BODY_FAMILIES, "auto"):
+        raise unknown("family", family, (*BODY_FAMILIES, "auto"))
+    sweeps = list(readings) if isinstance(readings, Sequence) else [readings]
+    for one in sweeps:
+        require("readings", one, SpatialReadings, "as read_space gives them")
+        require_plain("the fit of a body", one.beam)
+        if one.beam != sweeps[0].beam:
+            raise InputError(
+                "readings", "of different vibrissae", "of one", "fit each on its own"
+            )  # fmt: skip
+    passes = [_contacts(one, noise) for one in sweeps]
+    found = np.concatenate([one.clamp.contacts() for one in passes], axis=1)
+    if found.shape[1] < _FEWEST:
+        allowed = f"{_FEWEST} or more"
+        raise InputError("contacts", found.shape[1], allowed, "sweep further along the body")
+    points, normals = found[:3].T, found[3:6].T
+    known = families(points, normals)
+    length, stated = sweeps[0].beam.length, noise is not None
+    fitted = []
+    for kind in BODY_FAMILIES if family == "auto" else (family,):
+        start = _through_points(known[kind], points, normals)
+        with suppress(*([InputError] if family == "auto" else [])):
+            fitted.append(_fitted(passes, known[kind], start, length, stated))
+    explaining = [one for one in fitted if one.explains]
+    if family == "auto" and not explaining:
+        best = (f", the best leaves {min(one.misfit for one in fitted):.3g} times the noise"
+                if fitted else "")  # fmt: skip
+        allowed = "one that explains the readings"
+        remedy = "likely edges, friction, or a vibrissa that is not as stated"
+        raise InputError("family", f"none of them{best}", allowed, remedy)
+    rivals = {one.family: (one.bic, one.explains) for one in fitted}
+    return replace(min(explaining or fitted, key=lambda one: one.bic), rivals=rivals)
+
+
+def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _Contacts:
+    """The stations of a sweep whose contact is clearly at the tip or clearly before it."""
+    beam = readings.beam
+    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
+    seen = component_noise(readings, noise)
+    spread = np.array([seen[name] for name in COMPONENTS]) / units
+    clamp = ClampInSpace.of(readings)
+    force = np.linalg.norm(clamp.force, axis=1)
+    loaded = felt(readings, seen)
+    on = np.flatnonzero(loaded & (force > _FAINT * force[loaded].max(initial=0.0)))
+    if len(on) and on[-1] < len(readings.table) - 1:  # it slips off
+        on = on[: len(on) - int(np.ceil(_BESIDE_SLIP_OFF * len(on)))]
+    clamp = clamp.at(on)
+    largest = [np.abs(part).max(initial=0.0) for part in (clamp.force, clamp.moment)]
+    spread = np.maximum(spread, _LEAST * np.repeat(largest, 3))
+    found = clamp.contacts()
+    here = _Contacts(clamp, np.full(len(on), True), across(found[3:6].T), spread)
+    variance = np.zeros((2, len(on)))
+    for i, size in enumerate(spread):
+        moved = here.readings + size * np.eye(6)[i]
+        beside = clamp._replace(force=moved[:, :3], moment=moved[:, 3:]).contacts()
+        variance += (beside[6:] - found[6:]) ** 2
+    reach, release = found[6:]
+    before = reach < 1 - _CLEAR * np.sqrt(variance[0])
+    at_tip = release > _CLEAR * np.sqrt(variance[1])
+    kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip)
+    return _Contacts(clamp.at(kept), ~before[kept], here.sides[kept], spread)
+
+
+def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
+    """The numbers whose body is nearest to the contacts: where the fit of the readings starts."""
+
+    def apart(numbers: Floats) -> Floats:
+        height, expected = family.surface(numbers, points)
+        return np.concatenate([height, (expected - normals).ravel()])
+
+    found = least_squares(apart, family.start(points, normals), loss="soft_l1", f_scale=_OFF)
+    return np.asarray(found.x)
+
+
+def _fitted(
+    passes: Sequence[_Contacts], family: Family, numbers: Floats, length: float, stated: bool
+) -> FittedBody:
+    near = [one.readings for one in passes]
+    measured = np.concatenate(near)
+    over = np.concatenate([np.broadcast_to(one.spread, one.readings.shape) for one in passes])
+
+    def expected() -> tuple[Floats, Floats]:
+        each = [
+            one.expected(family, numbers, here) for one, here in zip(passes, near, strict=True)
+        ]  # fmt: skip
+        readings, slopes = (np.concatenate(both) for both in zip(*each, strict=True))
+        return readings, slopes
+
+    ends = np.cumsum([len(one) for one in near])[:-1]
+    with np.errstate(all="ignore"):
+        for _ in range(_ROUNDS):
+            readings, slopes = expected()
+            if not (np.isfinite(readings).all() and np.isfinite(slopes).all()):
+                raise _undetermined(family)
+            design = (slopes / over[:, :, None]).reshape(-1, len(numbers))
+            left = ((measured - readings) / over).ravel()
+            step = np.linalg.lstsq(design, left, rcond=None)[0]
+            step *= min(1.0, _KNOWN_TO / np.abs(step).max())
+            numbers = numbers + step
+            moved = readings + slopes @ step
+            beyond = _FARTHEST * over
+            near = np.split(measured + np.clip(moved - measured, -beyond, beyond), ends)
+            if np.abs(step).max() < _SETTLED:
+                break
+        else:
+            raise _undetermined(family)
+    known = _with_noise((measured - moved) / over, slopes / over[:, :, None], passes, stated)
+    numbers = numbers + known.numbers
+    misfit = float(np.sqrt((((measured - moved) / over) ** 2).sum() / (left.size - len(numbers))))
+    found = _estimates(family, numbers, known.covariance, length)
+    return FittedBody(
+        family.name,
+        found,
+        family.body(numbers).scaled(length),
+        misfit,
+        explained_by_noise(misfit, left.size - len(numbers)),
+        -2 * known.likelihood + len(numbers) * float(np.log(left.size)),
+        len(measured),
+        known.noise,
+        {},
+    )
+
+
+def _with_noise(
+    left: Floats, slopes: Floats, passes: Sequence[_Contacts], stated: bool
+) -> Estimated:
+    """What is left over the noise, explained by the numbers, by zeros, and by noise as it is."""
+    zeros, known_to = [], []
+    for one in passes:
+        largest = [np.abs(part).max() for part in (one.clamp.force, one.clamp.moment)]
+        zeros.append(np.broadcast_to(np.diag(1 / one.spread), (len(one.tip), 6, 6)))
+        known_to.append(_ZERO * np.repeat(largest, 3))
+    return estimate(
+        left,
+        slopes,
+        np.concatenate(zeros),
+        np.max(known_to, axis=0),
+        1.0 if stated else 0.0,
+        rows=[len(one.tip) for one in passes],
+    )
+
+
+def _estimates(
+    family: Family, numbers: Floats, covariance: Floats, length: float
+) -> dict[str, Estimate]:
+    """What is told of the body, with intervals, in the unit of the readings."""
+    found = {}
+    for name, value in family.told(numbers).items():
+        slopes = [
+            (family.told(numbers + step)[name] - family.told(numbers - step)[name]) / (2 * _STEP)
+            for step in _STEP * np.eye(len(numbers))
+        ]
+        half = DOUBLE_SIDED_95 * float(np.sqrt(slopes @ covariance @ np.array(slopes)))
+        if not half < _KNOWN_TO:
+            raise _undetermined(family)
+        unit = 1.0 if name.startswith("axis") else length
+        found[name] = Estimate(*(unit * x for x in (value, value - half, value + half)))
+    return found
+
+
+def _undetermined(family: Family) -> InputError:
+    remedy = "sweep along other lines past it, too, or fit a simpler family"
+    return InputError("family", family.name, "one that these readings determine", remedy)
