@@ -10,7 +10,7 @@ from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
 from compare.show.document import Block, Document, Table, Text, Tile, Verdict, sections
 from compare.show.numbers import place, quantity, sentence, short, words
-from compare.show.style import ALONG, PHASE_LETTERS
+from compare.show.style import ALONG, PHASE_LETTERS, Along
 
 # Of a source's provenance; they are drawn instead.
 _BULKY = ("contour", "others", "events", "joints", "path")
@@ -27,7 +27,7 @@ _LIMITED = {
 _PLACES = ("transition", "snap_off", "lateness", "event")  # of places along the sweep
 
 
-def comparison_document(
+def document(
     found: Comparison | SpatialComparison,
     about: str,
     verdict: Verdict,
@@ -69,12 +69,17 @@ def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -
     )
 
 
+def along(found: Comparison | SpatialComparison) -> Along:
+    """What is said of the column over which the sweeps run."""
+    return ALONG[found.reference.running]
+
+
 def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
     """How large the worst disagreement is."""
     one = found.disagreement[worst]
     if not one.stations:
         return
-    at = ALONG[found.reference.running].at.format(place(one.at / found.reference.running_unit[0]))
+    at = along(found).at.format(place(one.at / found.reference.running_unit[0]))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
     yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
 
@@ -83,7 +88,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
     """How far apart the two are, reading by reading and by phase, if any station shows it."""
     if not found.stations:
         return
-    beam, (size, along) = found.reference.beam, found.reference.running_unit
+    beam, (size, unit_along) = found.reference.beam, found.reference.running_unit
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
     rows = []
@@ -95,7 +100,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
         if isinstance(found, SpatialComparison):
             row["allowed"] = short(found.tolerances.of(name, "rms"))
         row |= {f"rms, {PHASE_LETTERS[p]}": short(one.rms_by_phase.get(p)) for p in phases}
-        row |= {"max": short(one.max), f"max at / {along}": place(one.at / size)}
+        row |= {"max": short(one.max), f"max at / {unit_along}": place(one.at / size)}
         if isinstance(found, Comparison):
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})

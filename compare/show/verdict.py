@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.show.budgets import left_over
 from compare.show.numbers import short
 
 _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
@@ -98,9 +99,8 @@ def _doubt(comparison: Comparison, budget: Budget) -> str:
     """What the budget leaves open, and where it is about fewer stations than the comparison."""
     said = ""
     if budget.undecided or not (budget.closes or budget.blame == "unexplained"):
-        rest = f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
         undecided = "the budget is undecided: " if budget.undecided else ""
-        said = f", but {undecided}{rest} stays unexplained"
+        said = f", but {undecided}{left_over(budget)} stays unexplained"
     compared = comparison.stations
     if budget.stations < _NEARLY_ALL * compared:
         said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"
