@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Annotated, Any, TypeVar
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -13,6 +15,7 @@ from pydantic import (
     PlainSerializer,
     PlainValidator,
     ValidationError,
+    create_model,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -140,6 +143,16 @@ class Table(BaseModel):
     def keys(cls) -> list[str]:
         """Keys that there may be."""
         return [field.alias or name for name, field in cls.model_fields.items()]
+
+
+def one_of_kinds(base: type[Table], keys: Mapping[str, Mapping[str, Any]]) -> Any:  # noqa: ANN401
+    """What a table may be that has one of several kinds, each with keys of its own beside it."""
+    kinds: list[Any] = []
+    for kind, own in keys.items():
+        fields: dict[str, Any] = {"kind": (Literal[kind], ...)}
+        fields |= {name: one if isinstance(one, tuple) else (one, ...) for name, one in own.items()}
+        kinds.append(create_model(kind, __base__=base, **fields))
+    return reduce(or_, kinds)
 
 
 _Schema = TypeVar("_Schema", bound=Table)

@@ -1,7 +1,7 @@
 """Case files of sweeps in space."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field
@@ -14,7 +14,15 @@ from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.motion import MotionTable
 from compare.read.profiles import Drawn
-from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
+from compare.read.quantities import (
+    FileName,
+    Length,
+    Point,
+    Table,
+    known_keys,
+    one_of_kinds,
+    validated,
+)
 from compare.read.tables import BeamTable, ContactTable
 from compare.read.toml import TomlFile
 from mujoco_models.settings import SpatialSettings
@@ -24,7 +32,7 @@ Axis = Annotated[tuple[float, float, float], Field(strict=False)]
 
 
 class BodyTable(Table):
-    """The body: a kind, which is the name of a function of `analytic.space`, and its numbers."""
+    """The body: a kind, which is the name of a function of `analytic.space`, and what it takes."""
 
     kind: str
 
@@ -34,37 +42,19 @@ class BodyTable(Table):
         return body
 
 
-class SphereTable(BodyTable):
-    """See `analytic.space.sphere`."""
-
-    kind: Literal["sphere"]
-    radius: Length
-    centre: Position
-
-
-class EllipsoidTable(BodyTable):
-    """See `analytic.space.ellipsoid`."""
-
-    kind: Literal["ellipsoid"]
-    semi_axes: Position
-    centre: Position
-    frame: Annotated[list[Axis], Field(min_length=3, max_length=3)] | None = None
-
-
-class CylinderTable(BodyTable):
-    """See `analytic.space.cylinder`."""
-
-    kind: Literal["cylinder"]
-    radius: Length
-    through: Position
-    axis: Axis
-
-
-class HullTable(BodyTable):
-    """See `analytic.space.polyhedron`."""
-
-    kind: Literal["polyhedron"]
-    points: list[Position]
+_Frame = Annotated[list[Axis], Field(min_length=3, max_length=3)] | None
+if TYPE_CHECKING:
+    Stated: TypeAlias = BodyTable
+else:
+    Stated = one_of_kinds(
+        BodyTable,
+        {
+            "sphere": {"radius": Length, "centre": Position},
+            "ellipsoid": {"semi_axes": Position, "centre": Position, "frame": (_Frame, None)},
+            "cylinder": {"radius": Length, "through": Position, "axis": Axis},
+            "polyhedron": {"points": list[Position]},
+        },
+    )
 
 
 class PrismTable(BodyTable):
@@ -112,15 +102,12 @@ class SpaceFile(Table):
     """What a case file of a sweep in space holds."""
 
     name: FileName | None = None  # what files and reports call the case
-    beam: BeamTable = BeamTable()  # the physics
-    body: Annotated[
-        SphereTable | EllipsoidTable | CylinderTable | HullTable | PrismTable | SolidTable,
-        Field(discriminator="kind"),
-    ]  # the physics
+    beam: BeamTable = BeamTable()
+    body: Annotated[Stated | PrismTable | SolidTable, Field(discriminator="kind")]
     # The contour of a prism, as in the plane.
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
-    path: PathTable  # the physics
-    contact: ContactTable = ContactTable()  # the physics
+    path: PathTable
+    contact: ContactTable = ContactTable()
     # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     motion: MotionTable | None = None
     # The numerics of MuJoCo's sweep.

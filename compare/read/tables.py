@@ -156,13 +156,13 @@ class CaseFile(Table):
     """What a case file holds; dimensions in one system of units, SI if units are given."""
 
     name: FileName | None = None  # what files and reports call the case
-    beam: BeamTable = BeamTable()  # the physics
-    support: SupportTable = SupportTable()  # the physics
-    contact: ContactTable = ContactTable()  # the physics
-    weight: WeightTable = WeightTable()  # the physics
-    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
-    sweep: StationsTable = StationsTable()  # the physics
-    whisk: WhiskTable | None = None  # the physics; instead of a sweep
+    beam: BeamTable = BeamTable()
+    support: SupportTable = SupportTable()
+    contact: ContactTable = ContactTable()
+    weight: WeightTable = WeightTable()
+    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]
+    sweep: StationsTable = StationsTable()
+    whisk: WhiskTable | None = None  # instead of a sweep
     # The numerics of the simulation.
     mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
     # A model of the user's own, if it is to be swept instead of ours.
