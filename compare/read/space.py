@@ -141,7 +141,7 @@ class SpaceFile(Table):
 def job_in_space(file: TomlFile) -> SpaceJob:
     """The job that a case file of a sweep in space states."""
     found = validated(SpaceFile, file.tables, file.place)
-    limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     case = found.case(file.path.parent, found.name or name_of(file.path))
+    limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     motion = None if found.motion is None else found.motion.build(case.beam)
     return SpaceJob(case, found.mujoco, limits, motion=motion)

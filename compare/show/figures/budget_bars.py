@@ -33,20 +33,15 @@ _PANEL = (4.3, 3.1)  # inches
 def picture(found: Budget) -> Figure:
     """Draw all readings side by side, under a sentence that says what they show."""
     width, height = _PANEL
-    figure = Figure(
-        figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
-    )
+    figure = Figure((width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained")
     axes = figure.subplots(1, len(CLAMP_READINGS))
     for ax, reading in zip(axes, CLAMP_READINGS, strict=True):
         _draw(ax, found, reading)
     for ax in axes:
         ax.tick_params(labelleft=ax is axes[0])
         ax.set_xlabel("")
-    figure.supxlabel(
-        "rms / largest magnitude, with its uncertainty; "
-        "dashed: all of it; grey: may stay unexplained",
-        fontsize=SMALL,
-    )
+    said = "with its uncertainty; dashed: all of it; grey: may stay unexplained"
+    figure.supxlabel(f"rms / largest magnitude, {said}", fontsize=SMALL)
     figure.suptitle(headline(found), fontsize=12)
     return figure
 

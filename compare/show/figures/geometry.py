@@ -36,11 +36,8 @@ def geometry(comparison: Comparison) -> Figure:
         phase = comparison.judged[which].phase
         _draw_shapes(ax, readings, phase)
         _draw_object(ax, readings, phase)
-        ax.set_title(
-            f"{which}: {style.label(readings.source)}",
-            loc="left",
-            fontsize=style.NORMAL,
-        )
+        title = f"{which}: {style.label(readings.source)}"
+        ax.set_title(title, loc="left", fontsize=style.NORMAL)
         ax.set_ylabel("$y$ / $L$")
         ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     beam = comparison.reference.beam
@@ -86,13 +83,10 @@ def reconstruction(
     if "uncertainty" in found:
         radius = found["uncertainty"].to_numpy() / scale
         known = np.flatnonzero(there & np.isfinite(radius))
-        circles = PatchCollection(
-            [Circle((x[i], y[i]), radius[i]) for i in known[:: len(known) // _CIRCLES + 1]],
-            color=style.GREEN,
-            alpha=0.08,
-            linewidth=0,
-        )
-        ax.add_collection(circles)
+        shown = known[:: len(known) // _CIRCLES + 1]
+        circles = [Circle((x[i], y[i]), radius[i]) for i in shown]
+        green = PatchCollection(circles, color=style.GREEN, alpha=0.08, linewidth=0)
+        ax.add_collection(green)
         ax.plot([], [], "o", color=style.GREEN, alpha=0.3, markersize=9, label="95 % of cases")
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
     if fitted is not None:
@@ -151,8 +145,6 @@ def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
         ax.fill_between(xi, eta, eta.max(), color=style.BODY, linewidth=0, zorder=0)
         ax.plot(xi, eta, **_OBJECT, zorder=1)
     found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
-    s, x, y = (
-        found[name].to_numpy() / scale for name in ("contact_arc_length", "contact_x", "contact_y")
-    )
+    s, x, y = found[["contact_arc_length", "contact_x", "contact_y"]].to_numpy().T / scale
     there = np.isfinite(on_vibrissa(s))
     draw(ax, x[there], y[there], **_CONTACT)

@@ -140,13 +140,10 @@ def phase_criterion(comparison: Comparison) -> Figure:
     )
     size, _ = comparison.reference.running_unit
     for place in comparison.transitions.values():
-        for where, colour in (
-            (place.reference, style.REFERENCE),
-            (place.candidate, style.CANDIDATE),
-        ):
-            if where is not None:
-                for ax in axes:
-                    ax.axvline(where / size, color=colour, linestyle=":", linewidth=1)
+        for side, colour in _COLOURS.items():
+            where = getattr(place, side)
+            for ax in () if where is None else axes:
+                ax.axvline(where / size, color=colour, linestyle=":", linewidth=1)
     key_below(figure, axes[0], 2)
     return figure
 
