@@ -26,9 +26,10 @@ NASTY = 'a <b>"case"</b> & <script>alert(1)</script> {{ 7 * 7 }} $$ ünder_score
 @pytest.fixture(scope="session")
 def film(tmp_path_factory) -> Film:
     folder = tmp_path_factory.mktemp("film")
-    Image.new("RGB", (80, 64), "white").save(folder / "film.gif")
-    Image.new("RGB", (80, 64), "white").save(folder / "still.png")
-    return Film(folder / "film.gif", folder / "still.png")
+    film = Film(folder / "film.gif", folder / "still.png")
+    for file in (film.gif, film.still):
+        Image.new("RGB", (80, 64), "white").save(file)
+    return film
 
 
 @pytest.fixture(scope="session")

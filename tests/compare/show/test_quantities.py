@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import SENSED, Beam, Case, Readings, circle, named_case, solve_sweep
+from analytic import SENSED, Beam, Case, Readings, circle, solve_sweep
 from compare import compare
 from compare.commands.pipeline import print_comparison
 from compare.show.figures.over_foot import foot_label, reading_label
 from compare.show.numbers import quantity
 from tests.compare.show.pages import written_page
+from tests.conftest import exact_sweep
 
 SI = Beam(0.05, 2e-6, 0.25e-3, si=True)
 
@@ -50,11 +51,8 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     assert "(2 mm ± 0 m)" in page
     assert reading_label(exact, "moment_z").endswith("= 40 µN m)")
     assert "50 mm" in foot_label(exact)
-    assert [ax.get_ylabel() for ax in exact.plot()] == [
-        "force_x [N]",
-        "force_y [N]",
-        "moment_z [N m]",
-    ]
+    units = {"force_x": "N", "force_y": "N", "moment_z": "N m"}
+    assert [ax.get_ylabel() for ax in exact.plot()] == [f"{n} [{u}]" for n, u in units.items()]
     print_comparison(found, None)
     assert "2 mm" in capsys.readouterr().out
     exact.write(tmp_path / "a.parquet")
@@ -62,7 +60,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
 
 
 def test_a_case_without_units_names_none():
-    exact = solve_sweep(named_case("parabola"))
+    exact = exact_sweep("parabola")
     assert "of the readings&#39; own units" in written_page(compare(exact, exact))
     assert foot_label(exact) == "foot_x / $L$"
     assert exact.plot()[0].get_ylabel() == "force_x"

@@ -11,16 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from analytic.space import (
-    SENSED_IN_SPACE,
-    FootPath,
-    SpatialCase,
-    SpatialReadings,
-    cylinder,
-    polyhedron,
-    solve_space,
-    sphere,
-)
+from analytic import space
+from analytic.space import FootPath, SpatialCase, SpatialReadings, solve_space
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare import compare
 from compare.show.report import write_report
@@ -28,7 +20,7 @@ from compare.show.scene import SweepScene, faces_within
 from compare.show.turning import turning
 
 CASE = SpatialCase(
-    body=sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=40)
+    body=space.sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=40)
 )
 # Turns, comes closer, moves the slider, and reports what has changed; errors are counted from the
 # first script on, and so is whatever the page fetches.
@@ -37,35 +29,30 @@ window.wrong = []; addEventListener("error", e => wrong.push(e.message));
 </script>"""
 PROBE = """<script>addEventListener("load", () => {
   const canvas = document.getElementById("scene-canvas"), context = canvas.getContext("2d");
-  const pixels = () => context.getImageData(0, 0, canvas.width, canvas.height).data;
   const seen = () => {
     const colours = {}; let drawn = 0, sum = 0;
-    const data = pixels();
+    const data = context.getImageData(0, 0, canvas.width, canvas.height).data;
     for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) {
       drawn++; sum = (sum * 31 + data[i] + 7 * data[i + 1] + i) % 1e9;
       const c = [data[i], data[i + 1], data[i + 2]].join(); colours[c] = (colours[c] || 0) + 1;
     }
-    return {drawn, sum, colours};
+    return {drawn, sum, colours, said: document.getElementById("scene-said").textContent};
   };
-  const found = {first: seen(), said: document.getElementById("scene-said").textContent};
-  const slider = document.getElementById("scene-station");
+  const found = {first: seen()}, slider = document.getElementById("scene-station");
   slider.value = 0; slider.dispatchEvent(new Event("input"));
-  found.free = seen(); found.saidFree = document.getElementById("scene-said").textContent;
+  found.free = seen();
   const box = canvas.getBoundingClientRect();
-  const pointer = (name, x, y) => {
-    const kind = window.PointerEvent ? "pointer" : "mouse";
-    (name === "down" ? canvas : window).dispatchEvent(new PointerEvent(kind + name,
-      {bubbles: true, pointerId: 1, button: 0, clientX: box.left + x, clientY: box.top + y}));
-  };
-  pointer("down", 100, 100); pointer("move", 180, 130); pointer("up", 180, 130);
+  const pointer = (on, name, x, y) => on.dispatchEvent(new PointerEvent("pointer" + name,
+    {bubbles: true, pointerId: 1, button: 0, clientX: box.left + x, clientY: box.top + y}));
+  pointer(canvas, "down", 100, 100); pointer(window, "move", 180, 130);
+  pointer(window, "up", 180, 130);
   found.turned = seen();
   document.querySelector("[data-zoom]").click();
   found.closer = seen();
   found.max = Number(slider.max);
   found.fetched = performance.getEntriesByType("resource").map(e => e.name)
     .filter(name => !name.startsWith("data:"));
-  found.wrong = wrong;
-  document.body.dataset.found = JSON.stringify(found);
+  document.body.dataset.found = JSON.stringify({...found, wrong});
 });</script></body>"""
 
 
@@ -80,7 +67,7 @@ def test_free_air_is_drawn_straight_whatever_the_noise():
     exact = solve_space(CASE)
     random = np.random.default_rng(0)
     columns = {n: exact.values(n) + random.normal(0, 1e-3, 40) for n in (*FORCE, *MOMENT)}
-    table = exact.table[[*SENSED_IN_SPACE]].assign(**columns)
+    table = exact.table[[*space.SENSED_IN_SPACE]].assign(**columns)
     scene = SweepScene.of(SpatialReadings(table, exact.beam, exact.tangent), None)
     free = ~exact.touching
     assert free.sum() > 10
@@ -102,8 +89,8 @@ def test_it_draws_turns_zooms_and_steps_offline_without_errors(look, report, tmp
     assert found["fetched"] == []
     assert found["max"] == 39
     assert found["first"]["drawn"] > 1000
-    assert "tangential" in found["said"]
-    assert "station 1 of 40" in found["saidFree"]
+    assert "tangential" in found["first"]["said"]
+    assert "station 1 of 40" in found["free"]["said"]
     for colour in ("213,94,0", "0,114,178"):  # contacts of both phases
         assert found["first"]["colours"].get(colour, 0) > 20
     sums = [found[name]["sum"] for name in ("first", "free", "turned", "closer")]
@@ -137,9 +124,9 @@ def test_the_page_holds_every_station_and_is_small(report):
 @pytest.mark.parametrize(
     "body",
     [
-        polyhedron([[x, y, z] for x in (-9, 9) for y in (0.6, 5) for z in (-9, 9)]),
-        cylinder(0.5, (0, 0.9, 0), (0.2, 0.1, 1)),
-        sphere(1.0, (0, 1.4, 0)),
+        space.polyhedron([[x, y, z] for x in (-9, 9) for y in (0.6, 5) for z in (-9, 9)]),
+        space.cylinder(0.5, (0, 0.9, 0), (0.2, 0.1, 1)),
+        space.sphere(1.0, (0, 1.4, 0)),
     ],
     ids=["wall", "endless", "ball"],
 )
