@@ -1,5 +1,6 @@
 """One page about all runs in a folder, every word of it from measured numbers."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -46,12 +47,13 @@ def runs_document(folder: Path) -> Document:
 
 def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
     """The worst of all runs, and how many budgets close."""
-    compared = [run for run in runs if run.error < float("inf")]
+    compared = [run for run in runs if run.worst[0] < math.inf]
     if compared:
-        worst = max(compared, key=lambda run: run.error)
+        run = max(compared, key=lambda run: run.worst[0])
+        error, name = run.worst
         yield (
-            f"The largest rms is {short(worst.error)} of the largest magnitude ({worst.worst}, "
-            f"{worst.case}, {worst.beam})."
+            f"The largest rms is {short(error)} of the largest magnitude ({name}, {run.case}, "
+            f"{run.beam})."
         )
     budgets = [run.budget for run in runs if isinstance(run.budget, Budget)]
     if budgets:

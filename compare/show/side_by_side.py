@@ -17,8 +17,7 @@ from compare.explain.split import Split, split
 from compare.read.runs import EngineOutcome
 from compare.show import style
 from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
-from compare.show.figures.keys import key_below
-from compare.show.figures.over_foot import foot_label, shade_reference
+from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.html import html
 from compare.show.numbers import short
 from compare.show.page import as_json, png

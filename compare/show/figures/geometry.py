@@ -16,8 +16,7 @@ from analytic import FittedObject, Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
-from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import draw, on_vibrissa
+from compare.show.figures.over_foot import draw, key_below, on_vibrissa, phase_handles
 from compare.show.numbers import quantity
 
 _SHAPES = 24  # drawn of each sweep

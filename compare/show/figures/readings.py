@@ -15,7 +15,6 @@ from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
 from compare.read.passes import Pass
 from compare.show import style
-from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
@@ -23,6 +22,7 @@ from compare.show.figures.over_foot import (
     foot,
     foot_label,
     key,
+    key_below,
     on_vibrissa,
     reading_label,
     scaled,

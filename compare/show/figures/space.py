@@ -15,8 +15,7 @@ from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison import SpatialComparison
 from compare.show import style
-from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import in_unit, unit
+from compare.show.figures.over_foot import in_unit, key_below, phase_handles, unit
 from compare.show.scene import SweepScene, normals
 
 _SHAPES = 24  # drawn of a sweep
