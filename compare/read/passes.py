@@ -106,7 +106,7 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
     """
     found = {}
     for name in SENSED:
-        said = getattr(rig.columns, name)
+        said = rig.columns[name]
         column = cells(table.frame, said.column, path, "fix [columns]")
         if not pd.api.types.is_numeric_dtype(column):
             column = column.mask(column.astype(str).str.strip().isin(rig.missing))
@@ -135,7 +135,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     for reason in ("missing", "dropped", "clipped", "repeated"):
         dropped[reason] = int(getattr(record, reason).sum())
     foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
-    said = {reading: getattr(rig.columns, reading) for reading in CLAMP_READINGS}
+    said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
