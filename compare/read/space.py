@@ -104,29 +104,23 @@ class SpaceFile(Table):
     name: FileName | None = None  # what files and reports call the case
     beam: BeamTable = BeamTable()
     body: Annotated[Stated | PrismTable | SolidTable, Field(discriminator="kind")]
-    # The contour of a prism, as in the plane.
-    profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
+    profile: Annotated[Drawn, Field(discriminator="kind")] | None = None  # of a prism
     path: PathTable
     contact: ContactTable = ContactTable()
-    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     motion: MotionTable | None = None
-    # The numerics of MuJoCo's sweep.
     mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()
-    # Limits of agreement, each with its reason.
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def case(self, folder: Path, name: str) -> SpatialCase:
         """The whole problem."""
-        is_prism = isinstance(self.body, PrismTable)
-        if is_prism != (self.profile is not None):
-            raise InputError(
-                "[profile]",
-                "missing" if is_prism else "given",
-                "given for a prism, whose contour it is, and for nothing else",
-                "add it" if is_prism else 'leave it out, or take kind = "prism"',
-            )
         if isinstance(self.body, PrismTable) and self.profile is not None:
             body: Body = prism(self.profile.build(folder), self.body.axis, self.body.origin)
+        elif isinstance(self.body, PrismTable) or self.profile is not None:
+            given, remedy = "given", 'leave it out, or take kind = "prism"'
+            if self.profile is None:
+                given, remedy = "missing", "add it"
+            allowed = "given for a prism, whose contour it is, and for nothing else"
+            raise InputError("[profile]", given, allowed, remedy)
         else:
             body = self.body.build(folder)
         return SpatialCase(

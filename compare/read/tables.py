@@ -139,7 +139,11 @@ class EngineTable(Table):
 
 
 class CaseFile(Table):
-    """What a case file holds; dimensions in one system of units, SI if units are given."""
+    """What a case file holds; dimensions in one system of units, SI if units are given.
+
+    A whisk stands for the sweep, a model of the user's own for ours; without a motion MuJoCo's beam
+    is at rest at every station.
+    """
 
     name: FileName | None = None  # what files and reports call the case
     beam: BeamTable = BeamTable()
@@ -148,18 +152,12 @@ class CaseFile(Table):
     weight: WeightTable = WeightTable()
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]
     sweep: StationsTable = StationsTable()
-    whisk: WhiskTable | None = None  # instead of a sweep
-    # The numerics of the simulation.
+    whisk: WhiskTable | None = None
     mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
-    # A model of the user's own, if it is to be swept instead of ours.
     model: ModelTable | None = None
-    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     motion: MotionTable | None = None
-    # Which engines sweep it at rest: names between commas, of `engines.list_engines`.
     engine: EngineTable = EngineTable()
-    # How far two sweeps of the case may disagree (`compare.read.limits`).
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
-    # How well the inputs are known (`compare.read.uncertainty`).
     uncertainty: UncertaintyTable = UncertaintyTable()
 
     def physics(self, folder: Path) -> Physics:
@@ -191,14 +189,14 @@ class CaseFile(Table):
             )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)
-            if is_mesh and beam.si and "scale" not in self.profile.model_fields_set:
-                raise InputError(
-                    "profile.scale",
-                    "missing, so the mesh file's numbers are taken for metres",
-                    'the size of their unit, scale = "1 mm" for millimetres',
-                    f"add it ({error})",
-                ) from error
-            raise
+            if not is_mesh or not beam.si or "scale" in self.profile.model_fields_set:
+                raise
+            raise InputError(
+                "profile.scale",
+                "missing, so the mesh file's numbers are taken for metres",
+                'the size of their unit, scale = "1 mm" for millimetres',
+                f"add it ({error})",
+            ) from error
 
 
 def _support(clamp: SupportTable, contact: ContactTable, weight: WeightTable) -> Support:
