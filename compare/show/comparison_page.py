@@ -35,22 +35,21 @@ def document(
     *parts: tuple[str, str, Iterable[Block]],
 ) -> Document:
     """All that there is to say of a comparison, the sections of its own before the common ones."""
-    reference, candidate = found.reference, found.candidate
-    beam = reference.beam
+    reference, beam = found.reference, found.reference.beam
     length = quantity(beam.length, "length", beam)
     force = quantity(beam.force_unit, "force", beam)
     moment = quantity(beam.moment_unit, "moment", beam)
     own = "" if beam.si else " of the readings' own units"
+    case = reference.provenance.get("case") or "a sweep"
     return Document(
-        f"{reference.provenance.get('case') or 'a sweep'}: "
-        f"{candidate.source} against {reference.source}",
+        f"{case}: {found.candidate.source} against {reference.source}",
         f"{about} Lengths are given in L = {length}, forces in EI/L² = {force} and moments in "
         f"EI/L = {moment}{own}.",
         verdict,
         sections(
             *parts,
             ("tolerances", "Tolerances, and why", _limits(found)),
-            ("settings", "Settings and versions", [_settings(reference, candidate)]),
+            ("settings", "Settings and versions", [_settings(reference, found.candidate)]),
         ),
         [*tiles],
     )
@@ -59,14 +58,10 @@ def document(
 def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -> Verdict:
     """Whether the two agree, and why not."""
     agrees = "agrees" if found.agrees else "disagrees"
-    return Verdict(
-        found.agrees,
-        f"{found.candidate.source} {agrees} with {found.reference.source}.",
-        said,
-        "" if found.agrees else sentence(why),
-        found.failures,
-        [sentence(remark) for remark in found.remarks],
-    )
+    claim = f"{found.candidate.source} {agrees} with {found.reference.source}."
+    likely = "" if found.agrees else sentence(why)
+    remarks = [*map(sentence, found.remarks)]
+    return Verdict(found.agrees, claim, said, likely, found.failures, remarks)
 
 
 def along(found: Comparison | SpatialComparison) -> Along:
@@ -91,11 +86,10 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
     beam, (size, unit_along) = found.reference.beam, found.reference.running_unit
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
+    units = {"f": (beam.force_unit, "EI/L²"), "m": (beam.moment_unit, "EI/L")}
     rows = []
     for name, one in found.disagreement.items():
-        unit, symbol = beam.force_unit, "EI/L²"
-        if name.startswith("moment"):
-            unit, symbol = beam.moment_unit, "EI/L"
+        unit, symbol = units[name[0]]
         row = {"reading": name, "rms": short(one.rms)}
         if isinstance(found, SpatialComparison):
             row["allowed"] = short(found.tolerances.of(name, "rms"))

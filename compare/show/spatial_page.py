@@ -132,15 +132,16 @@ def _events(comparison: SpatialComparison) -> Iterator[Block]:
         "Above: phases of both sweeps; white is without readings. Below: distance between their "
         "contacts; dashed is what its rms may be.",
     )
-    said = []
+    said = ""
     if comparison.phase_agreement is None:
-        said.append("Phases are not compared: a source records none.")
+        said += "Phases are not compared: a source records none. "
     if comparison.contact.from_clamp:
-        sources = " and ".join(comparison.contact.from_clamp)
-        said.append(f"Contacts of {sources} are found from the clamp.")
+        said += (
+            f"Contacts of {' and '.join(comparison.contact.from_clamp)} are found from the clamp. "
+        )
     lacking, having = comparison.candidate.source, comparison.reference.source
-    said.append(f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}.")
-    yield Text(" ".join(said))
+    lost = f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}."
+    yield Text(said + lost)
     statuses = comparison.statuses.items()
     counted = [(f"{which}, {what}", str(n)) for which, of in statuses for what, n in of.items()]
     yield Table("What became of the stations", (), counted)

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from compare import compare
-from compare.show.animation import write_animation
+from compare.show.animation.plane import write_animation
 from compare.show.document import Film
 from compare.show.report import write_report
 from tests.compare.planted import planted
