@@ -1,19 +1,8 @@
-"""Fixtures for users' own tests: ``vibrissa_case``, ``vibrissa_sweep``, ``vibrissa_agreement``.
-
-And ``vibrissa_engine_sweep``, for a test that runs with every engine; ``vibrissa_space_case`` and
-``vibrissa_space_sweep`` for sweeps in space.
+"""Fixtures for users' own tests: cases, sweeps, and whether they agree (`compare/gates.md`).
 
 The package registers this module as a pytest plugin, so every run of pytest in an environment that
 has the package imports it. It imports nothing but pytest until a fixture or option is used; and it
 is no part of a package, so that a ``compare.py`` of the user's own is in nobody's way.
-
-``--vibrissa-case NAME|FILE`` (repeat it) or the marker ``@pytest.mark.vibrissa(NAME, ...)`` choose
-the cases that a test is run for, by default all named ones; where there are both, the marker's.
-``--vibrissa-engine NAME`` and ``@pytest.mark.vibrissa_engine(NAME, ...)`` choose the engines in the
-same way, for tests that use `vibrissa_engine_sweep`; by default all that are known.
-``--vibrissa-space FILE`` and ``@pytest.mark.vibrissa_space(FILE, ...)`` choose the cases in space.
-``--vibrissa-report DIR`` writes the report of every comparison that `vibrissa_agreement` makes, and
-``DIR/summary.md``.
 """
 
 from __future__ import annotations
@@ -41,7 +30,6 @@ if TYPE_CHECKING:
 
     AnyComparison = Comparison | SpatialComparison
     AnyReadings = Readings | SpatialReadings
-    Sweeps = dict[tuple[object, ...], Any]
 
 _PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
@@ -160,14 +148,21 @@ def vibrissa_job(request: pytest.FixtureRequest, vibrissa_case: Case) -> Job:
     return cast("Job", request.node.stash[_JOBS][_CASE.fixture])
 
 
+class _Sweeps(dict[object, Any]):
+    """By case, settings (None: the closed form) and engine."""
+
+    def once(self, key: object, make: Callable[[], Any]) -> Any:  # noqa: ANN401
+        return self[key] if key in self else self.setdefault(key, make())
+
+
 @pytest.fixture(scope="session")
-def vibrissa_sweeps() -> Sweeps:
-    """The sweeps of this session, by case, settings (None: the closed form) and engine."""
-    return {}
+def vibrissa_sweeps() -> _Sweeps:
+    """The sweeps of this session."""
+    return _Sweeps()
 
 
 @pytest.fixture
-def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: Sweeps) -> Callable[..., Readings]:
+def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: _Sweeps) -> Callable[..., Readings]:
     """``vibrissa_sweep()`` is the closed form's sweep of `vibrissa_case`.
 
     ``vibrissa_sweep("chain", segments=80)`` is MuJoCo's; further words are those of
@@ -193,7 +188,7 @@ def vibrissa_engine(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def vibrissa_engine_sweep(
-    vibrissa_engine: str, vibrissa_job: Job, vibrissa_sweeps: Sweeps
+    vibrissa_engine: str, vibrissa_job: Job, vibrissa_sweeps: _Sweeps
 ) -> Callable[..., Readings]:
     """``vibrissa_engine_sweep(segments=80)`` is the sweep of `vibrissa_case` in the engine.
 
@@ -212,7 +207,7 @@ def vibrissa_engine_sweep(
                 pytest.skip(f"engine {vibrissa_engine}: {error}")
             return _ours("engines.apart").checked(found, case)
 
-        return _once(vibrissa_sweeps, (case.digest, numerics, vibrissa_engine), sweep)
+        return vibrissa_sweeps.once((case.digest, numerics, vibrissa_engine), sweep)
 
     return made
 
@@ -225,7 +220,7 @@ def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
 
 @pytest.fixture
 def vibrissa_space_sweep(
-    request: pytest.FixtureRequest, vibrissa_space_case: SpatialCase, vibrissa_sweeps: Sweeps
+    request: pytest.FixtureRequest, vibrissa_space_case: SpatialCase, vibrissa_sweeps: _Sweeps
 ) -> Callable[..., SpatialReadings]:
     """``vibrissa_space_sweep()`` is the closed form's sweep of `vibrissa_space_case`.
 
@@ -311,7 +306,7 @@ def _chosen(request: pytest.FixtureRequest, one: _Choice) -> Any:  # noqa: ANN40
 
 
 def _swept(
-    sweeps: Sweeps,
+    sweeps: _Sweeps,
     key: object,
     case: Any,  # noqa: ANN401
     settings: Any,  # noqa: ANN401
@@ -322,17 +317,11 @@ def _swept(
 
     def made(beam: BeamKind | None = None, **words: Any) -> Any:  # noqa: ANN401
         if beam is None:
-            return _once(sweeps, (key, None), lambda: solve(case))
+            return sweeps.once((key, None), lambda: solve(case))
         numerics = replace(settings, beam=beam, **words)
-        return _once(sweeps, (key, repr(numerics)), lambda: simulate(case, numerics))
+        return sweeps.once((key, repr(numerics)), lambda: simulate(case, numerics))
 
     return made
-
-
-def _once(sweeps: Sweeps, key: tuple[object, ...], make: Callable[[], Any]) -> Any:  # noqa: ANN401
-    if key not in sweeps:
-        sweeps[key] = make()
-    return sweeps[key]
 
 
 def _ours(module: str) -> Any:  # noqa: ANN401

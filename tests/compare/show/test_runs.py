@@ -3,14 +3,16 @@
 import json
 import math
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
 from compare.align.frames import COMPONENTS
+from compare.explain.split import Split
 from compare.explain.split_space import Parts
-from compare.read.runs import read_runs
+from compare.read.runs import EngineOutcome, read_runs
 from compare.report import write_report
 from tests.compare.planted import planted
 from tests.compare.show.pages import Page
@@ -61,12 +63,6 @@ def test_names_settings_and_blame_are_no_markup(runs):
     assert "<script" not in text
 
 
-def test_nothing_to_report(tmp_path):
-    with pytest.raises(InputError, match="a folder with runs in it"):
-        write_report(tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize(
     ("file", "content"),
     [
@@ -84,22 +80,22 @@ def test_damaged_runs_are_named(runs, tmp_path, file, content):
         write_report(runs, tmp_path / "out")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 400
+    with pytest.raises(InputError, match="a folder with runs in it"):
+        write_report(tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
 def engines_left(folder, implementation=1e-9):
     """What a run in MuJoCo and a twin of it leaves, of which one has no readings."""
-    rms = dict.fromkeys(CLAMP_READINGS, 2e-3)
-    row = {"role": "twin", "version": "1.0", "trouble": None, "rms": rms, "snap_off_apart": None}
-    row |= {"seconds_a_station": 0.01, "agrees": True, "tuned": "as it is"}
-    lost = {"trouble": "not finished after 20 s", "rms": None, "agrees": False}
-    split = {"subject": "mujoco", "twin": "drake", "disagreement": rms, "model": rms}
-    split |= {"implementation": dict.fromkeys(CLAMP_READINGS, implementation), "snap_off": None}
-    split["others"] = {"exudyn": dict.fromkeys(CLAMP_READINGS, 5e-5) | {"force_x": math.nan}}
-    engines = [{"name": "mujoco", **row}, {"name": "drake", **row}, {"name": "slow", **row, **lost}]
+    rms, apart = (dict.fromkeys(CLAMP_READINGS, x) for x in (2e-3, implementation))
+    others = {"exudyn": dict.fromkeys(CLAMP_READINGS, 5e-5) | {"force_x": math.nan}}
+    split = Split("mujoco", "drake", rms, apart, rms, others, None)
+    swept = [EngineOutcome(name, "twin", "1.0", "as it is", None, rms, None, 0.01, agrees=True)
+             for name in ("mujoco", "drake")]  # fmt: skip
+    slow = EngineOutcome("slow", "twin", "1.0", trouble="not finished after 20 s")
+    content = {"case": "catenary", "engines": [*swept, slow], "split": split}
     folder.mkdir(parents=True)
-    content = {"case": "catenary", "engines": engines, "split": split}
-    (folder / "engines.json").write_text(json.dumps(content))
+    (folder / "engines.json").write_text(json.dumps(content, default=asdict))
 
 
 def test_runs_in_many_engines_are_split(tmp_path):
@@ -118,14 +114,15 @@ def test_runs_in_many_engines_are_split(tmp_path):
 
 def test_a_run_in_space_is_a_row(tmp_path):
     """Its six components, and its own parts; no snap-off, and no phases."""
-    rms = {name: {"rms": 4e-3} for name in COMPONENTS}
     egg = {"source": "mujoco chain", "stations": 12, "beam": {"length": 1.0}}
     egg |= {"provenance": {"case": "egg", "body": "sphere", "settings": {"segments": 6}}}
-    content = {"verdict": "agrees", "disagreement": rms, "phases": {"agreement": None}}
+    content = {"verdict": "agrees", "phases": {"agreement": None}, "candidate": egg}
+    content["disagreement"] = {name: {"rms": 4e-3} for name in COMPONENTS}
     parts = Parts(whole=4e-3, discretisation=3e-3, softness=1e-3, unexplained=1e-5, stations=9)
-    (tmp_path / "runs" / "egg").mkdir(parents=True)
-    for name, said in (("comparison", content | {"candidate": egg}), ("budget", parts.to_dict())):
-        (tmp_path / "runs" / "egg" / f"{name}.json").write_text(json.dumps(said))
+    run = tmp_path / "runs" / "egg"
+    run.mkdir(parents=True)
+    (run / "comparison.json").write_text(json.dumps(content))
+    (run / "budget.json").write_text(json.dumps(parts.to_dict()))
     text = write_report(tmp_path / "runs", tmp_path / "out").path.read_text()
     assert text.count("<td>4.0e-3</td>") == len(COMPONENTS)
     assert "discretisation" in text
