@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from analytic import SENSED, Beam, Case, Readings, circle, solve_sweep
@@ -49,6 +48,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     page = written_page(found)
     assert "L = 50 mm, forces in EI/L² = 0.8 mN" in page
     assert "(2 mm ± 0 m)" in page
+    assert "the candidate&#39;s true ones are not known" in page
     assert reading_label(exact, "moment_z").endswith("= 40 µN m)")
     assert "50 mm" in foot_label(exact)
     units = {"force_x": "N", "force_y": "N", "moment_z": "N m"}
@@ -64,18 +64,3 @@ def test_a_case_without_units_names_none():
     assert "of the readings&#39; own units" in written_page(compare(exact, exact))
     assert foot_label(exact) == "foot_x / $L$"
     assert exact.plot()[0].get_ylabel() == "force_x"
-
-
-def test_phases_are_those_of_the_candidate(exact):
-    """A measured sweep that is wrong has no phases of its own that could be right."""
-    rig = measured(exact)
-    assert compare(exact, rig, offset=2e-3).phases_alike() == 1
-    wrong = rig.table.assign(force_y=3 * rig.table["force_y"])
-    found = compare(exact, replace(rig, table=wrong), offset=2e-3)
-    share = found.phases_alike()
-    assert share is not None
-    assert share < 0.9  # observed 0.845
-    assert "the candidate&#39;s true ones are not known" in written_page(found)
-    assert found.to_dict()["phases"]["agreement"] == 1.0  # of those whose truth is recorded
-    lost = replace(exact, table=exact.table.assign(force_y=np.nan))
-    assert compare(exact, lost).phases_alike() is None
