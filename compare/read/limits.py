@@ -26,9 +26,7 @@ class LimitTable(Table):
 def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
     """The ``[tolerances]`` table of a TOML file; other tables do not matter."""
     file = TomlFile.read(path, "tolerance file")
-    if "tolerances" not in file.tables:
-        raise InputError(f"{path}: [tolerances]", "missing", "given", "add the table")
-    return tolerances_of(file.tables["tolerances"], file.place, kind)
+    return tolerances_of(file.table("tolerances"), file.place, kind)
 
 
 def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]) -> _Limits:

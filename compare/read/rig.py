@@ -155,10 +155,7 @@ def raw_table(source: Source) -> RawTable:
 
 
 def renamed(
-    raw: RawTable,
-    columns: Sequence[str],
-    called: str,
-    sensed: Sequence[str] = SENSED,
+    raw: RawTable, columns: Sequence[str], called: str, sensed: Sequence[str] = SENSED
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI."""
     table, place, units = raw
@@ -257,8 +254,5 @@ def _in_order(readings: Readings, way: Direction) -> Readings:
         table = table.groupby(station).agg(how)
     if not (back or repeated):
         return readings
-    provenance = {
-        **readings.provenance,
-        "rows": {"out_of_order": back, "averaged": int(repeated)},
-    }
+    provenance = {**readings.provenance, "rows": {"out_of_order": back, "averaged": int(repeated)}}
     return replace(readings, table=table.reset_index(drop=True), provenance=provenance)

@@ -243,10 +243,8 @@ def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
     Other tables do not matter.
     """
     file = TomlFile.read(path, "beam file")
-    if "beam" not in file.tables:
-        raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
     known = {name: file.tables[name] for name in BeamFile.model_fields if name in file.tables}
-    found = validated(BeamFile, known, file.place)
+    found = validated(BeamFile, {"beam": file.table("beam"), **known}, file.place)
     beam = found.beam.build()
     if len(known) == 1:
         return beam, {}

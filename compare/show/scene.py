@@ -15,7 +15,6 @@ from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
 _DEPTH = 0.5  # of the scene, at least, over its longest side
 _MARGIN = 0.1  # L, around what moves
 _CORNERS = 500  # of a body that is drawn: what a picture can show of a round one
-_AT_ONCE = 20  # directions; so many numbers a corner fit in memory for a million corners
 _SLIVER = 1e-6  # L; a body that shows less is not drawn
 
 
@@ -63,12 +62,9 @@ class SweepScene:
 
 def _box(points: Floats) -> tuple[Floats, Floats]:
     low, high = points.min(axis=0), points.max(axis=0)
-    widest = _DEPTH * float((high - low).max())  # a straight way has no depth
+    deep = _DEPTH / 2 * np.array([1.0, 0.0, 1.0]) * (high - low).max()  # a straight way has none
     middle = (low + high) / 2
-    for i in (0, 2):
-        low[i] = min(low[i], middle[i] - widest / 2)
-        high[i] = max(high[i], middle[i] + widest / 2)
-    return low - _MARGIN, high + _MARGIN
+    return np.minimum(low, middle - deep) - _MARGIN, np.maximum(high, middle + deep) + _MARGIN
 
 
 def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
@@ -105,11 +101,8 @@ def _outermost(points: Floats) -> Floats:
     points = pd.DataFrame(points).drop_duplicates().to_numpy()
     if len(points) <= _CORNERS:
         return points
-    ways = spread(_CORNERS)
-    chosen = [
-        np.argmax(ways[i : i + _AT_ONCE] @ points.T, axis=1) for i in range(0, _CORNERS, _AT_ONCE)
-    ]
-    return np.asarray(points[np.unique(np.concatenate(chosen))])
+    chosen = [np.argmax(points @ way) for way in spread(_CORNERS)]
+    return np.asarray(points[np.unique(chosen)])
 
 
 def corners_and_faces(faces: Floats) -> tuple[Floats, Integers]:

@@ -123,17 +123,12 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
     chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
     if not chosen.size:
         return
-    scale = readings.beam.length
     # A sweep has two stations at least.
-    rows = readings.table.iloc[np.append(chosen, chosen[-1])]
-    picked = replace(readings, table=rows)
-    x, y = (path[:-1] / scale for path in deflected_shapes(picked))
-    lines = LineCollection(
-        list(np.stack([x, y], axis=-1)),
-        colors=[style.PHASE_COLOURS[str(phase[i])] for i in chosen],
-        linewidths=1.1,
-    )
-    ax.add_collection(lines)
+    picked = replace(readings, table=readings.table.iloc[np.append(chosen, chosen[-1])])
+    x, y = (path[:-1] / readings.beam.length for path in deflected_shapes(picked))
+    colours = [style.PHASE_COLOURS[str(phase[i])] for i in chosen]
+    lines = list(np.stack([x, y], axis=-1))
+    ax.add_collection(LineCollection(lines, colors=colours, linewidths=1.1))
     ax.plot(x[:, 0], y[:, 0], "s", color=style.GREY, markersize=2.5)
     ax.autoscale_view()
 
