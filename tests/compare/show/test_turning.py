@@ -5,7 +5,6 @@ Needs Chromium, as `test_browser` does.
 
 import json
 import re
-from html import unescape
 
 import numpy as np
 import pytest
@@ -21,12 +20,8 @@ from compare.show.scene import SweepScene, faces_within
 CASE = SpatialCase(
     body=space.sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=40)
 )
-# Turns, comes closer, moves the slider, and reports what has changed; errors are counted from the
-# first script on, and so is whatever the page fetches.
-WATCH = """<script>
-window.wrong = []; addEventListener("error", e => wrong.push(e.message));
-</script>"""
-PROBE = """<script>addEventListener("load", () => {
+# Turns, comes closer, moves the slider, and says what has changed and what the page fetches.
+PROBE = """
   const canvas = document.getElementById("scene-canvas"), context = canvas.getContext("2d");
   const seen = () => {
     const colours = {}; let drawn = 0, sum = 0;
@@ -48,11 +43,9 @@ PROBE = """<script>addEventListener("load", () => {
   found.turned = seen();
   document.querySelector("[data-zoom]").click();
   found.closer = seen();
-  found.max = Number(slider.max);
-  found.fetched = performance.getEntriesByType("resource").map(e => e.name)
-    .filter(name => !name.startsWith("data:"));
-  document.body.dataset.found = JSON.stringify({...found, wrong});
-});</script></body>"""
+  const fetched = performance.getEntriesByType("resource").map(e => e.name);
+  return {...found, max: Number(slider.max), wrong,
+          fetched: fetched.filter(name => !name.startsWith("data:"))};"""
 
 
 @pytest.fixture(scope="module")
@@ -76,14 +69,11 @@ def test_free_air_is_drawn_straight_whatever_the_noise():
 
 
 @pytest.mark.slow
-def test_it_draws_turns_zooms_and_steps_offline_without_errors(look, report, tmp_path):
+def test_it_draws_turns_zooms_and_steps_offline_without_errors(probe, report):
     text = report.read_text(encoding="utf-8")
     assert "import(" not in text
     assert not re.search(r'(src|href)="(?!data:|#)', text)
-    page = tmp_path / "probed.html"
-    page.write_text(text.replace("<head>", "<head>" + WATCH).replace("</body>", PROBE))
-    shown = look(page, "--window-size=1200,900", "--virtual-time-budget=4000", "--dump-dom")
-    found = json.loads(unescape(re.search(r'data-found="([^"]*)"', shown)[1]))
+    found = probe(report, PROBE, 1200)
     assert found["wrong"] == []
     assert found["fetched"] == []
     assert found["max"] == 39
