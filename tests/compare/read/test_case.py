@@ -121,6 +121,7 @@ def test_what_is_not_in_the_paper_has_keys(load):
     [
         (UNITED, 'flexural_rigidity = "2e-6 N m^2"\n', "", "line 1: beam.flexural_rigidity = miss"),
         (UNITED, 'length = "50 mm"\n', "", "line 1: beam.length = missing"),
+        (UNITED, 'length = "50 mm"\n', "radius = 1\n", "line 2: beam.radius = without a unit"),
         (UNITED, UNITED[: UNITED.index("[profile]")], "", "beam.length = missing"),
         (UNITED, UNITED[UNITED.index('"circle"') :], '"two-circles"', "profile.right_radius = mis"),
         (UNITED, '"50 mm"', '"50 mmm"', "a known unit of length, as '50 mm'"),

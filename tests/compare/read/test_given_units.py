@@ -100,6 +100,8 @@ def test_a_line_of_units_below_the_names(tmp_path, exact, rig, separator, bracke
     assert named.values("moment_z") == pytest.approx(1e6 * found.values("moment_z"))
     path.write_text(path.read_text().replace(separator.join(names), separator.join(SENSED)))
     assert read_measured(path, BEAM).values("foot_x") == pytest.approx(found.values("foot_x"))
+    in_m = read_measured(path, BEAM, ["foot_x=foot_x:m"])
+    assert in_m.values("foot_x") == pytest.approx(1e3 * found.values("foot_x"))
 
 
 def test_names_that_are_units_by_chance_are_names(tmp_path, rig):

@@ -61,6 +61,8 @@ def test_a_zero_is_handed_on_with_its_uncertainty(tmp_path, kind):
         stated = np.array([*one.readings.provenance["zero_uncertainty"].values()])
         line = size * (0.05 + 0.03 * middle / (exact().shape[1] - 1))
         errors.append((one.taken[:, middle] - line) / stated)
+        left = np.stack([one.readings.values(name) for name in CLAMP_READINGS]) - exact()[1:]
+        assert (np.abs(left).mean(axis=1) < 0.03 * size).all()
     assert 0.1 < np.mean(np.square(errors)) < (1.2 if kind == "white" else np.inf)
 
 

@@ -105,7 +105,9 @@ def test_rows_out_of_order_and_repeated_positions():
     shuffled = read_measured(TABLE.sample(frac=1, random_state=1), beam=BEAM, columns=COLUMNS)
     assert_same(shuffled)
     assert shuffled.provenance["rows"]["out_of_order"] > 0
-    repeated = read_measured(TABLE.loc[np.repeat(TABLE.index, 3)], beam=BEAM, columns=COLUMNS)
+    thrice = TABLE.loc[np.repeat(TABLE.index, 3)]
+    thrice["Fx"] += np.tile([-0.5, 0.0, 0.5], 40)
+    repeated = read_measured(thrice, beam=BEAM, columns=COLUMNS)
     assert_same(repeated)
     assert repeated.provenance["rows"] == {"out_of_order": 0, "averaged": 80}
     jitter = TABLE.assign(stage=FOOT + 0.03 * np.random.default_rng(0).standard_normal(40))
