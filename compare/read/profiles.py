@@ -25,16 +25,13 @@ if TYPE_CHECKING:
 else:
     Drawn = one_of_kinds(
         ProfileTable,
+        CONTOURS.__getitem__,
         {
             "catenary": {"a": PerLength, "c": Length},
             "parabola": {"a": PerLength, "c": Length},
             "circle": {"radius": Length, "lowest": Point},
             "ellipse": {"semi_axes": Point, "lowest": Point},
-            "two-circles": {
-                "right_radius": (Length, 2.0),
-                "left_radius": (Length, 0.5),
-                "lowest": (Point, (0.0, 0.5)),
-            },
+            "two-circles": {"right_radius": Length, "left_radius": Length, "lowest": Point},
             "polygon": {"points": Points},
             "points": {"points": Points},
         },

@@ -1,8 +1,9 @@
 """Values of a file: numbers, and texts with a unit; and tables of them, checked."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import reduce
+from inspect import Parameter, signature
 from operator import or_
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -140,12 +141,19 @@ class Table(BaseModel):
         return [field.alias or name for name, field in cls.model_fields.items()]
 
 
-def one_of_kinds(base: type[Table], keys: Mapping[str, Mapping[str, Any]]) -> Any:  # noqa: ANN401
-    """What a table may be that has one of several kinds, each with keys of its own beside it."""
+def one_of_kinds(
+    base: type[Table],
+    made: Callable[[str], Callable[..., Any]],
+    keys: Mapping[str, Mapping[str, Any]],
+) -> Any:  # noqa: ANN401  # a union of tables
+    """What a table may be that has one of several kinds: beside that what makes the kind takes."""
     kinds: list[Any] = []
     for kind, own in keys.items():
+        takes = signature(made(kind)).parameters
         fields: dict[str, Any] = {"kind": (Literal[kind], ...)}
-        fields |= {name: one if isinstance(one, tuple) else (one, ...) for name, one in own.items()}
+        for name, one in own.items():
+            default = takes[name].default
+            fields[name] = one, ... if default is Parameter.empty else default
         kinds.append(create_model(kind, __base__=base, **fields))
     return reduce(or_, kinds)
 

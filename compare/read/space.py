@@ -1,5 +1,6 @@
 """Case files of sweeps in space."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -48,9 +49,10 @@ if TYPE_CHECKING:
 else:
     Stated = one_of_kinds(
         BodyTable,
+        partial(getattr, space),
         {
             "sphere": {"radius": Length, "centre": Position},
-            "ellipsoid": {"semi_axes": Position, "centre": Position, "frame": (_Frame, None)},
+            "ellipsoid": {"semi_axes": Position, "centre": Position, "frame": _Frame},
             "cylinder": {"radius": Length, "through": Position, "axis": Axis},
             "polyhedron": {"points": list[Position]},
         },

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from analytic import InputError
+from analytic import InputError, named_case
 from compare.read.case import load_job
 from compare.read.toml import TomlFile
 
@@ -108,6 +108,8 @@ def test_what_is_not_in_the_paper_has_keys(load):
     assert (case.beam.natural_curvature, case.friction) == (-6.0, 0.2)
     assert case.clamp_stiffness == pytest.approx(5.585e-6 * 180 / math.pi)
     assert load(CIRCLE + "[support]\n[contact]\n").case.is_plain
+    contour = load('[profile]\nkind = "two-circles"\n').case.profile
+    assert contour.label == named_case("two-circles").profile.label
     beam = load(TABLED).case.beam
     assert beam.varies
     np.testing.assert_allclose(beam.rigidity_at([0.0, 0.05]), [2e-6, 1e-6])

@@ -66,6 +66,17 @@ def test_a_zero_is_handed_on_with_its_uncertainty(tmp_path, kind):
     assert 0.1 < np.mean(np.square(errors)) < (1.2 if kind == "white" else np.inf)
 
 
+def test_without_a_free_stretch_a_column_has_the_zero_that_is_stated(tmp_path):
+    files, described = rig(tmp_path, before=0.0, after=0.0)
+    text = (tmp_path / "rig.toml").read_text().replace('"fy"', '"fy", zero = 0.5, gain = 2.0')
+    (tmp_path / "rig.toml").write_text(text)
+    read, stated = (
+        look_at_passes(files, one)[0].readings.values("force_y")
+        for one in (described, read_rig(tmp_path / "rig.toml"))
+    )
+    np.testing.assert_allclose(stated, 2 * (read - 0.5), atol=1e-12)
+
+
 def test_a_converter_that_does_not_move_knows_its_zero_to_a_step(tmp_path):
     step = 0.02 * np.abs(exact()[1:]).max(axis=1, keepdims=True)
 
