@@ -44,6 +44,7 @@ def test_page(folder, tmp_path):
     assert '<td class="text">chain</td><td>40</td>' in row
     assert f"{rms['force_x']:.1e}".replace("e-0", "e-") in row
     assert "not measured" in row
+    assert row.endswith("<td>17</td></tr>")  # ms a station: a second for 60
     assert text.index(">catenary</h2>") < text.index(">parabola</h2>")
     (picture,) = page.all("img")
     assert picture["alt"].startswith("Budget of the chain: discretisation")
@@ -113,11 +114,12 @@ def test_runs_in_many_engines_are_split(tmp_path):
 
 
 def test_a_run_in_space_is_a_row(tmp_path):
-    """Its six components, and its own parts; no snap-off, and no phases."""
-    egg = {"source": "mujoco chain", "stations": 12, "beam": {"length": 1.0}}
+    """Its six components, and its own parts; no phases, and as of a whisk a snap-off in rad."""
+    egg = {"source": "mujoco chain", "stations": 12, "beam": {"length": 2.0}}
     egg |= {"provenance": {"case": "egg", "body": "sphere", "settings": {"segments": 6}}}
     content = {"verdict": "agrees", "phases": {"agreement": None}, "candidate": egg}
     content["disagreement"] = {name: {"rms": 4e-3} for name in COMPONENTS}
+    content |= {"running": "clamp_angle", "snap_off": {"difference": 0.1}}
     parts = Parts(whole=4e-3, discretisation=3e-3, softness=1e-3, unexplained=1e-5, stations=9)
     run = tmp_path / "runs" / "egg"
     run.mkdir(parents=True)
@@ -126,4 +128,5 @@ def test_a_run_in_space_is_a_row(tmp_path):
     text = write_report(tmp_path / "runs", tmp_path / "out").path.read_text()
     assert text.count("<td>4.0e-3</td>") == len(COMPONENTS)
     assert "discretisation" in text
+    assert "<td>1.0e-1 rad</td>" in text
     assert "1 of 1 sweeps agree" in text
