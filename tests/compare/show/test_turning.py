@@ -66,6 +66,8 @@ def test_free_air_is_drawn_straight_whatever_the_noise():
     assert (scene.phase == "free")[free].all()
     tips = scene.foot + np.array([0.0, 1.0, 0.0])
     assert np.abs(scene.lines[free, -1] - tips[free]).max() < 1e-12
+    assert scene.high[1] == pytest.approx(np.nanmax(scene.lines[:, :, 1]) + 0.1)  # a margin, ...
+    assert (scene.high - scene.low)[2] > 0.5  # ... and depth where the way has none
 
 
 @pytest.mark.slow
