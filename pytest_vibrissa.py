@@ -1,19 +1,8 @@
-"""Fixtures for users' own tests: ``vibrissa_case``, ``vibrissa_sweep``, ``vibrissa_agreement``.
-
-And ``vibrissa_engine_sweep``, for a test that runs with every engine; ``vibrissa_space_case`` and
-``vibrissa_space_sweep`` for sweeps in space.
+"""Fixtures for users' own tests: cases, sweeps, and whether they agree (`compare/gates.md`).
 
 The package registers this module as a pytest plugin, so every run of pytest in an environment that
 has the package imports it. It imports nothing but pytest until a fixture or option is used; and it
 is no part of a package, so that a ``compare.py`` of the user's own is in nobody's way.
-
-``--vibrissa-case NAME|FILE`` (repeat it) or the marker ``@pytest.mark.vibrissa(NAME, ...)`` choose
-the cases that a test is run for, by default all named ones; where there are both, the marker's.
-``--vibrissa-engine NAME`` and ``@pytest.mark.vibrissa_engine(NAME, ...)`` choose the engines in the
-same way, for tests that use `vibrissa_engine_sweep`; by default all that are known.
-``--vibrissa-space FILE`` and ``@pytest.mark.vibrissa_space(FILE, ...)`` choose the cases in space.
-``--vibrissa-report DIR`` writes the report of every comparison that `vibrissa_agreement` makes, and
-``DIR/summary.md``.
 """
 
 from __future__ import annotations
@@ -21,26 +10,26 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import pytest
 
 if TYPE_CHECKING:
     from analytic import Case, Readings
     from analytic.space import SpatialCase, SpatialReadings
-    from compare.align.frames import Frame
     from compare.comparison import Comparison, SpatialComparison
     from compare.explain.budget import Budget
     from compare.judge.tolerances import SpatialTolerances, Tolerances
     from compare.read.job import Job
     from mujoco_models.allowed import BeamKind
 
-    Sweeps = dict[tuple[object, ...], Any]
+    AnyComparison = Comparison | SpatialComparison
+    AnyReadings = Readings | SpatialReadings
 
 _PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
@@ -51,44 +40,44 @@ class _Choice(NamedTuple):
     """What a fixture is run for, once each."""
 
     fixture: str
-    marker: str
     option: str
     metavar: str
     what: str
     default: str
-    load: tuple[str, str]  # a module of ours, and what reads a name there
+    read: Callable[[str], Any]
+    every: Callable[[], Iterable[str]]  # without marker and option
 
-    def read(self, name: str) -> Any:  # noqa: ANN401
-        module, function = self.load
-        return getattr(_ours(module), function)(name)
+    @property
+    def marker(self) -> str:
+        return self.fixture.removesuffix("_case")
 
 
 _CASE = _Choice(
     "vibrissa_case",
-    "vibrissa",
     "--vibrissa-case",
     "NAME|FILE",
     "case, named or a TOML file,",
     " (default: all named)",
-    ("compare.read.case", "load_job"),
+    lambda name: _ours("compare.read.case").load_job(name),
+    lambda: _ours("analytic").CASE_NAMES,
 )
 _ENGINE = _Choice(
-    "vibrissa_engine",
     "vibrissa_engine",
     "--vibrissa-engine",
     "NAME",
     "engine",
     " (default: all that are known)",
-    ("engines.known", "named_engines"),
+    lambda name: _ours("engines.known").named_engines(name),
+    lambda: [found.name for found in _ours("engines").list_engines()],
 )
 _SPACE_CASE = _Choice(
     "vibrissa_space_case",
-    "vibrissa_space",
     "--vibrissa-space",
     "FILE",
     "case in space",
     "",
-    ("compare.read.case", "load_space_job"),
+    lambda name: _ours("compare.read.case").load_space_job(name),
+    lambda: (),  # there are no named ones: the fixture says how to choose
 )
 _CHOICES = (_CASE, _ENGINE, _SPACE_CASE)
 
@@ -137,8 +126,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
             continue
         marker = metafunc.definition.get_closest_marker(one.marker)
         asked = (marker.args if marker else ()) or metafunc.config.getoption(one.option)
-        names = [str(name) for name in asked or _every(one)]
-        if names:  # there are no named cases in space: the fixture says how to choose
+        names = [str(name) for name in asked or one.every()]
+        if names:
             ids = [Path(name).stem for name in names]
             try:
                 metafunc.parametrize(one.fixture, names, ids=ids, indirect=True)
@@ -147,34 +136,33 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
                     raise
 
 
-def _every(one: _Choice) -> list[str]:
-    if one is _ENGINE:
-        return [found.name for found in _ours("engines").list_engines()]
-    return list(_ours("analytic").CASE_NAMES) if one is _CASE else []
-
-
 @pytest.fixture
 def vibrissa_case(request: pytest.FixtureRequest) -> Case:
     """The problem: an `analytic.Case`, one test for each that marker or option names."""
-    case: Case = _chosen(request, _CASE)
-    return case
+    return cast("Case", _chosen(request, _CASE))
 
 
 @pytest.fixture
 def vibrissa_job(request: pytest.FixtureRequest, vibrissa_case: Case) -> Job:
     """The case with MuJoCo's settings and the tolerances that its file states."""
-    job: Job = request.node.stash[_JOBS][_CASE.fixture]
-    return job
+    return cast("Job", request.node.stash[_JOBS][_CASE.fixture])
+
+
+class _Sweeps(dict[object, Any]):
+    """By case, settings (None: the closed form) and engine."""
+
+    def once(self, key: object, make: Callable[[], Any]) -> Any:  # noqa: ANN401
+        return self[key] if key in self else self.setdefault(key, make())
 
 
 @pytest.fixture(scope="session")
-def vibrissa_sweeps() -> Sweeps:
-    """The sweeps of this session, by case, settings (None: the closed form) and engine."""
-    return {}
+def vibrissa_sweeps() -> _Sweeps:
+    """The sweeps of this session."""
+    return _Sweeps()
 
 
 @pytest.fixture
-def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: Sweeps) -> Callable[..., Readings]:
+def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: _Sweeps) -> Callable[..., Readings]:
     """``vibrissa_sweep()`` is the closed form's sweep of `vibrissa_case`.
 
     ``vibrissa_sweep("chain", segments=80)`` is MuJoCo's; further words are those of
@@ -200,7 +188,7 @@ def vibrissa_engine(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def vibrissa_engine_sweep(
-    vibrissa_engine: str, vibrissa_job: Job, vibrissa_sweeps: Sweeps
+    vibrissa_engine: str, vibrissa_job: Job, vibrissa_sweeps: _Sweeps
 ) -> Callable[..., Readings]:
     """``vibrissa_engine_sweep(segments=80)`` is the sweep of `vibrissa_case` in the engine.
 
@@ -219,7 +207,7 @@ def vibrissa_engine_sweep(
                 pytest.skip(f"engine {vibrissa_engine}: {error}")
             return _ours("engines.apart").checked(found, case)
 
-        return _once(vibrissa_sweeps, (case.digest, numerics, vibrissa_engine), sweep)
+        return vibrissa_sweeps.once((case.digest, numerics, vibrissa_engine), sweep)
 
     return made
 
@@ -227,13 +215,12 @@ def vibrissa_engine_sweep(
 @pytest.fixture
 def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
     """A problem in space: an `analytic.space.SpatialCase`, one test for each that is chosen."""
-    case: SpatialCase = _chosen(request, _SPACE_CASE)
-    return case
+    return cast("SpatialCase", _chosen(request, _SPACE_CASE))
 
 
 @pytest.fixture
 def vibrissa_space_sweep(
-    request: pytest.FixtureRequest, vibrissa_space_case: SpatialCase, vibrissa_sweeps: Sweeps
+    request: pytest.FixtureRequest, vibrissa_space_case: SpatialCase, vibrissa_sweeps: _Sweeps
 ) -> Callable[..., SpatialReadings]:
     """``vibrissa_space_sweep()`` is the closed form's sweep of `vibrissa_space_case`.
 
@@ -251,7 +238,7 @@ def vibrissa_space_sweep(
 @pytest.fixture
 def vibrissa_agreement(
     request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
-) -> Callable[..., Comparison | SpatialComparison]:
+) -> Callable[..., AnyComparison]:
     """``vibrissa_agreement(candidate)`` fails unless the candidate agrees with the closed form.
 
     ``vibrissa_agreement(candidate, reference, tolerances, offset=, noise=, budget=)``, as
@@ -262,26 +249,23 @@ def vibrissa_agreement(
     """
     reported = 0
 
-    def closed_form(asked: _Choice) -> Readings | SpatialReadings:
+    def closed_form(asked: _Choice) -> AnyReadings:
         if asked.fixture not in request.fixturenames:
             pytest.fail(
                 f"vibrissa_agreement: give a reference, or let the test use `{asked.fixture}`",
                 pytrace=False,
             )
         sweep = request.getfixturevalue(asked.fixture.replace("case", "sweep"))
-        found: Readings | SpatialReadings = sweep()
-        return found
+        return cast("AnyReadings", sweep())
 
     def agree(
-        candidate: Readings | SpatialReadings,
-        reference: Readings | SpatialReadings | None = None,
+        candidate: AnyReadings,
+        reference: AnyReadings | None = None,
         tolerances: Tolerances | SpatialTolerances | None = None,
         *,
-        offset: float | Literal["auto"] = 0.0,
-        noise: float | Literal["auto"] = 0.0,
         budget: Budget | None = None,
-        frame: Frame = "world",
-    ) -> Comparison | SpatialComparison:
+        **how: Any,  # noqa: ANN401
+    ) -> AnyComparison:
         __tracebackhide__ = True
         nonlocal reported
         in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
@@ -291,14 +275,12 @@ def vibrissa_agreement(
         job = request.node.stash.get(_JOBS, {}).get(asked.fixture)
         if tolerances is None and job is not None:
             tolerances = job.tolerances
-        found: Comparison | SpatialComparison = _ours("compare.comparison").compare(
-            reference, candidate, tolerances, offset=offset, noise=noise, frame=frame
-        )
+        found: AnyComparison = _ours("compare").compare(reference, candidate, tolerances, **how)
         folder = request.config.getoption("--vibrissa-report")
         if folder is not None:
             reported += 1
             name = re.sub(r"[^\w.-]+", "-", f"{request.node.nodeid}-{reported}")
-            body = job.case.body if in_space and job is not None else None
+            body = None if job is None else job.body
             row = _ours("compare.testing.summary").report(found, folder, name, body)
             record_property(_RECORD, json.dumps(row))
         _ours("compare.testing.gates").demand(found, budget)
@@ -324,7 +306,7 @@ def _chosen(request: pytest.FixtureRequest, one: _Choice) -> Any:  # noqa: ANN40
 
 
 def _swept(
-    sweeps: Sweeps,
+    sweeps: _Sweeps,
     key: object,
     case: Any,  # noqa: ANN401
     settings: Any,  # noqa: ANN401
@@ -335,17 +317,11 @@ def _swept(
 
     def made(beam: BeamKind | None = None, **words: Any) -> Any:  # noqa: ANN401
         if beam is None:
-            return _once(sweeps, (key, None), lambda: solve(case))
+            return sweeps.once((key, None), lambda: solve(case))
         numerics = replace(settings, beam=beam, **words)
-        return _once(sweeps, (key, repr(numerics)), lambda: simulate(case, numerics))
+        return sweeps.once((key, repr(numerics)), lambda: simulate(case, numerics))
 
     return made
-
-
-def _once(sweeps: Sweeps, key: tuple[object, ...], make: Callable[[], Any]) -> Any:  # noqa: ANN401
-    if key not in sweeps:
-        sweeps[key] = make()
-    return sweeps[key]
 
 
 def _ours(module: str) -> Any:  # noqa: ANN401

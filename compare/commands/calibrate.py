@@ -66,7 +66,7 @@ def calibrate(
     from compare.read.case import load_job
     from compare.read.rig import read_measured
     from compare.sense.record import without_dropouts
-    from compare.show.calibration import calibration_document, calibration_summary
+    from compare.show.fits import calibration_document, calibration_summary
 
     known = load_job(case).case
     passes = [

@@ -97,14 +97,16 @@ def _filmed(
     comparison: AnyComparison, folder: Path, body: "Body | None", frames: int | None
 ) -> Film | None:
     """The film, if there is to be one; an older one would be of other sweeps."""
-    from compare.show.animation import space, write_animation
+    from compare.show.animation import plane, space
 
     if frames is None:
         (folder / "animation.gif").unlink(missing_ok=True)
         return None
     with terminal.progress("frames", frames) as advance:
         if isinstance(comparison, Comparison):
-            write_animation(comparison.reference, comparison.candidate, folder, frames, advance)
+            plane.write_animation(
+                comparison.reference, comparison.candidate, folder, frames, advance
+            )
         elif body is not None:
             space.write_space_animation(
                 comparison.reference, comparison.candidate, folder, body, frames, advance

@@ -32,7 +32,7 @@ from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
-from compare.show.fitted_object import object_document, object_summary
+from compare.show.fits import object_document, object_summary
 from compare.show.numbers import quantity
 
 

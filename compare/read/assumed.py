@@ -28,18 +28,12 @@ def assumed_of(readings: Readings) -> Readings:
     found = reconstruct(some)[clearly_loaded(some)]
     good = found["status"] == "ok"
     wrong, apart = int((~good).sum()), _off_the_contour(found[good])
-    why = None
+    why = f"contacts up to {apart:.2g} L off any one object with" if apart > _OFF else ""
     if wrong > _IMPOSSIBLE * len(found):
         why = f"{wrong} of {len(found)} contacts cannot be of"
-    elif apart > _OFF:
-        why = f"contacts up to {apart:.2g} L off any one object with"
-    if why is not None:
-        raise InputError(
-            "vibrissa",
-            "none given",
-            f"the one that was measured ({why} L = EI = 1)",
-            BEAM_WANTED,
-        )
+    if why:
+        allowed = f"the one that was measured ({why} L = EI = 1)"
+        raise InputError("vibrissa", "none given", allowed, BEAM_WANTED)
     return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
 
 
@@ -53,9 +47,7 @@ def _off_the_contour(found: pd.DataFrame) -> float:
 
     The largest step counts as none: the vibrissa may swing to the other side of the object.
     """
-    x, y, alpha = (
-        found[name].to_numpy(dtype=float) for name in ("contact_x", "contact_y", "contact_angle")
-    )
+    x, y, alpha = found[["contact_x", "contact_y", "contact_angle"]].to_numpy(dtype=float).T
     if len(x) < 2:
         return 0.0
     normal = (alpha[1:] + alpha[:-1]) / 2

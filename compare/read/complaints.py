@@ -12,8 +12,8 @@ from analytic.problem.errors import InputError, near
 from compare.read.toml import KeyPlace
 
 _LONGEST_NAME = 100
-
-
+_OF_KINDS = ("profile", "body")  # tables that are of one of several kinds
+UNKNOWN_KEY = "unknown_key"
 _brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = 80
 
@@ -27,7 +27,9 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
     """What a validation error says, in one line; an unknown key explains what else is wrong."""
     found = error.errors(include_url=False)
     first = min(found, key=lambda one: one["type"] != UNKNOWN_KEY)
-    inside = _keys(first["loc"])
+    inside = [*map(str, first["loc"])]
+    if inside[:1] and inside[0] in _OF_KINDS:  # pydantic names the kind, too, which is no key
+        del inside[1:2]
     keys = [*outer, *inside]
     name, value, context = place(keys), shown(first["input"]), first.get("ctx", {})
     match first["type"]:
@@ -47,19 +49,14 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
         case "model_type" | "dataclass_type":
             return InputError(name, value, "a table", "write its keys below its name in brackets")
         case "value_error":
-            return _refused(context["error"], value, inside, outer, place)
+            refused = context["error"]
+            if isinstance(refused, InputError):
+                named = refused.name.split(".")
+                if named[: len(inside)] == inside:  # it says which of the table's keys
+                    return refused.called(place([*outer, *named]))
+            return InputError(name, value, "usable", str(refused))
     allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
     return InputError(name, value, allowed.replace("valid tuple", "list"), "change it")
-
-
-UNKNOWN_KEY = "unknown_key"
-_OF_KINDS = ("profile", "body")  # tables that are of one of several kinds
-
-
-def _keys(location: Sequence[int | str]) -> list[str]:
-    """The keys of a place; pydantic names the kind of a table, too, which is no key."""
-    of_kinds = location[:1] and location[0] in _OF_KINDS
-    return [str(part) for i, part in enumerate(location) if i != 1 or not of_kinds]
 
 
 def require_known(given: object, allowed: Sequence[str]) -> None:
@@ -68,17 +65,6 @@ def require_known(given: object, allowed: Sequence[str]) -> None:
         if key not in allowed:
             about = {"key": key, "allowed": ", ".join(allowed)}
             raise PydanticCustomError(UNKNOWN_KEY, "no known key", about)
-
-
-def _refused(
-    error: Exception, value: str, inside: Sequence[str], outer: Sequence[str], place: KeyPlace
-) -> InputError:
-    """What a table says against a value, of one of its keys if it names one."""
-    if isinstance(error, InputError):
-        keys = error.name.split(".")
-        if keys[: len(inside)] == [*inside]:
-            return error.called(place([*outer, *keys]))
-    return InputError(place([*outer, *inside]), value, "usable", str(error))
 
 
 def plain_name(text: str) -> str:

@@ -1,8 +1,6 @@
 """Tables as measuring programs write them: which separator, which decimal mark, where they begin.
 
-What a program writes differs in three ways: what is between two cells (a comma, a semicolon, a
-tab, blanks), whether 0.5 is 0.5 or 0,5, and how many lines of its own come first. The three are
-found from the lines themselves: that reading counts under which the most lines are numbers.
+These are found from the lines themselves: that reading counts under which most lines are numbers.
 """
 
 import io
@@ -71,9 +69,8 @@ def read_text_table(path: Path) -> RawTable:
     try:
         text = _decoded(path.read_bytes())
     except OSError as error:
-        raise InputError(
-            "readings file", path, "readable", f"check it ({error.strerror})"
-        ) from error
+        remedy = f"check it ({error.strerror})"
+        raise InputError("readings file", path, "readable", remedy) from error
     looked_at = list(islice(_filled(text), _LOOKED_AT))
     head = [line for _, line in looked_at]
     dialect = max(_DIALECTS, key=lambda one: _rows(one, head)[1])  # of equals the first
@@ -89,12 +86,18 @@ def read_text_table(path: Path) -> RawTable:
     units = _units(dialect, head[:begin], width)
     names = _names(dialect, head[: begin - bool(units)], width)
     rows = [(number, line) for number, line in _filled(text) if number >= first]
+
+    def place(row: int) -> str:
+        return f"line {rows[row][0]} of {path}"
+
     if '"' not in text:  # a separator in quotes is none; the parser sees to it
-        _require_width(dialect, rows, width, path)
+        for i, (_, line) in enumerate(rows):  # else numbers may be another column's
+            found = len(line.split(dialect.separator))
+            if found != width:
+                allowed = f"{width}, as line {rows[0][0]}"
+                raise InputError(place(i), f"{found} cells", allowed, "fix it")
     frame = _parsed(dialect, "\n".join(line for _, line in rows), names, path)
-    return RawTable(
-        frame, lambda row: f"line {rows[row][0]} of {path}", dict(zip(names, units, strict=False))
-    )
+    return RawTable(frame, place, dict(zip(names, units, strict=False)))
 
 
 def _decoded(content: bytes) -> str:
@@ -154,15 +157,6 @@ def _units(dialect: Dialect, before: list[str], width: int) -> list[str]:
     given = [(name, unit) for name, unit in zip(names, units, strict=False) if unit]
     is_row = len(given) > 1 and all(name and is_unit(unit) for name, unit in given)
     return units if is_row else []
-
-
-def _require_width(dialect: Dialect, rows: list[tuple[int, str]], width: int, path: Path) -> None:
-    """Refuse lines with too many or too few cells: their numbers may be another column's."""
-    for number, line in rows:
-        found = len(line.split(dialect.separator))
-        if found != width:
-            where, allowed = f"line {number} of {path}", f"{width}, as line {rows[0][0]}"
-            raise InputError(where, f"{found} cells", allowed, "fix it")
 
 
 def _parsed(dialect: Dialect, rows: str, names: list[str], path: Path) -> pd.DataFrame:

@@ -26,9 +26,7 @@ class LimitTable(Table):
 def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
     """The ``[tolerances]`` table of a TOML file; other tables do not matter."""
     file = TomlFile.read(path, "tolerance file")
-    if "tolerances" not in file.tables:
-        raise InputError(f"{path}: [tolerances]", "missing", "given", "add the table")
-    return tolerances_of(file.tables["tolerances"], file.place, kind)
+    return tolerances_of(file.table("tolerances"), file.place, kind)
 
 
 def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]) -> _Limits:
@@ -36,15 +34,14 @@ def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}
     keys: tuple[str, ...]
-    for keys, said in _limits(table, ()):
+    for keys, said in _limits(table):
         where = ("tolerances", *keys)
-        here = place(where)
         if len(keys) == 1 and keys[0] not in kind.general():
             allowed = f"one of {', '.join(kind.general())}"
-            raise InputError(here, "unknown", allowed, near(keys[0], kind.general()))
+            raise InputError(place(where), "unknown", allowed, near(keys[0], kind.general()))
         if not isinstance(said, dict):
             allowed = 'a limit with its reason, { limit = 1e-3, reason = "..." }'
-            raise InputError(here, repr(said), allowed, "say why it is as large as it is")
+            raise InputError(place(where), repr(said), allowed, "say why it is as large as it is")
         try:
             found = LimitTable.model_validate(said)
         except ValidationError as error:
@@ -54,12 +51,10 @@ def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]
     return kind(**general, special=special)
 
 
-def _limits(
-    table: Mapping[str, Any], outer: tuple[str, ...]
-) -> Iterator[tuple[tuple[str, ...], object]]:
+def _limits(table: Mapping[str, Any], *outer: str) -> Iterator[tuple[tuple[str, ...], object]]:
     """What stands for a limit in a table, and in the tables in it."""
     for key, value in table.items():
         if isinstance(value, dict) and "limit" not in value:
-            yield from _limits(value, (*outer, key))
+            yield from _limits(value, *outer, key)
         else:
             yield (*outer, key), value

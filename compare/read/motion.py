@@ -1,20 +1,18 @@
 """The ``[motion]`` table of a case file: natural units, or quantities with units."""
 
 import math
-from typing import Annotated
+from dataclasses import fields
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_type_hints
 
-from pydantic import Field, PlainValidator
+from pydantic import Field, PlainValidator, create_model
 
 from analytic import Beam, InputError
 from compare.read.quantities import PLAIN, Dimension, InSI, Table
 from compare.read.toml import KeyPlace
-from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
+from mujoco_models.motion import Motion
 
 _FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration of a cantilever
-
-
 _OF_A_MODEL = ("speed", "ramp", "average", "cutoff", "contact_stiffness")
-
 
 Speed = Annotated[float, PlainValidator(Dimension("m/s")), PLAIN]
 Time = Annotated[float, PlainValidator(Dimension("s")), PLAIN]
@@ -24,7 +22,7 @@ Solref = Annotated[tuple[Time, float], Field(strict=False)]
 _POSITIVE = Field(gt=0, allow_inf_nan=False)
 
 
-class MotionTable(Table):
+class _MotionTable(Table):
     """How the foot moves and MuJoCo steps; see `mujoco_models.Motion`.
 
     Plain numbers are in natural units, L and the first period T1 of the free vibrissa. Texts with a
@@ -34,39 +32,25 @@ class MotionTable(Table):
 
     period: Annotated[Time, _POSITIVE] | None = None
     density: Annotated[Density, _POSITIVE] | None = None
-    speed: Speed = Motion.speed
-    timestep: Time = Motion.timestep
-    integrator: IntegratorKind = Motion.integrator
-    damping_ratio: float = Motion.damping_ratio
-    armature: float = Motion.armature
-    contact_stiffness: float | None = Motion.contact_stiffness
-    solref: Solref | None = Motion.solref
-    solimp: float = Motion.solimp
-    solver: SolverKind = Motion.solver
-    cone: ConeKind = Motion.cone
-    friction: float | None = Motion.friction
-    impratio: float = Motion.impratio
-    ramp: Time = Motion.ramp
-    average: float = Motion.average
-    cutoff: Frequency | None = Motion.cutoff
 
     def build(self, beam: Beam) -> Motion:
         """The motion."""
         period = self._period(beam)
-        numbers = self.model_dump(exclude={"period", "density"})
-        natural = {"speed": beam.length / (period or 1.0), "timestep": period, "ramp": period,
-                   "cutoff": 1 / period if period else None}  # fmt: skip
-        solref = self.solref and (_over(self.solref[0], period), self.solref[1])
-        for name, unit in natural.items():
-            numbers[name] = _over(getattr(self, name), unit if period else None)
-        if isinstance(self.speed, InSI) and not beam.si:
+        numbers = {name: x for name, x in self if name not in _MotionTable.model_fields}
+        speed, solref = numbers["speed"], numbers["solref"]
+        if isinstance(speed, InSI) and not beam.si and period:
             raise InputError(
                 "motion.speed",
-                f"{float(self.speed):g} m/s",
+                f"{float(speed):g} m/s",
                 "a number, in L/T1, where the vibrissa's length has no unit",
                 "give the length with a unit, or the speed without",
             )
-        return Motion(**{**numbers, "solref": solref})
+        numbers["speed"] = _over(speed, period and beam.length / period)
+        for name in ("timestep", "ramp"):
+            numbers[name] = _over(numbers[name], period)
+        numbers["cutoff"] = _over(numbers["cutoff"], period and 1 / period)
+        numbers["solref"] = solref and (_over(solref[0], period), solref[1])
+        return Motion(**numbers)
 
     def of_a_model(self, beam: Beam, place: KeyPlace) -> Motion:
         """The motion of a user's own model, which brings most of it with it."""
@@ -82,20 +66,29 @@ class MotionTable(Table):
 
     def _period(self, beam: Beam) -> float | None:
         """T1 [s], if it can be known."""
-        if self.period is not None and self.density is not None:
-            raise InputError(
-                "motion.density", self.density, "left out where the period is given", "take one"
-            )
         if self.density is None:
             return self.period
-        if not beam.si:
-            raise InputError(
-                "motion.density",
-                self.density,
-                "left out where the vibrissa's dimensions have no units",
-                "give the dimensions with units, or the period",
-            )
-        return first_period(beam, self.density)
+        if self.period is not None:
+            allowed, remedy = "left out where the period is given", "take one"
+        elif not beam.si:
+            allowed = "left out where the vibrissa's dimensions have no units"
+            remedy = "give the dimensions with units, or the period"
+        else:
+            return first_period(beam, self.density)
+        raise InputError("motion.density", self.density, allowed, remedy)
+
+
+if TYPE_CHECKING:
+    MotionTable: TypeAlias = _MotionTable
+else:
+    _WITH_UNITS = {"speed": Speed, "timestep": Time, "ramp": Time, "cutoff": Frequency | None,
+                   "solref": Solref | None}  # fmt: skip
+    _KEYS: dict[str, Any] = get_type_hints(Motion, include_extras=True) | _WITH_UNITS
+    MotionTable = create_model(
+        "MotionTable",
+        __base__=_MotionTable,
+        **{field.name: (_KEYS[field.name], field.default) for field in fields(Motion)},
+    )
 
 
 def first_period(beam: Beam, density: float) -> float:

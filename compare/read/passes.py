@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -12,13 +13,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
-from compare.read.nonsense import (
-    check_ahead,
-    check_back,
-    check_channels,
-    check_drift,
-    check_free,
-)
+from compare.read.nonsense import check_ahead, check_back, check_channels, check_drift, check_free
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
 from compare.sense.record import Record, check_size, inspect_record
@@ -72,9 +67,8 @@ def look_at_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
     stems = [path.stem for path in files]
     for path in files:
         if stems.count(path.stem) > 1:
-            raise InputError(
-                "FILE", path, "of a name that no other has", "rename it: passes take it"
-            )
+            allowed = "of a name that no other has"
+            raise InputError("FILE", path, allowed, "rename it: passes take it")
     return [one for path in files for one in _of_file(path, rig)]
 
 
@@ -83,9 +77,8 @@ def _files(source: Path) -> list[Path]:
         return [source]
     files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
     if not files:
-        raise InputError(
-            "FILE", source, f"a folder with files named *{', *'.join(TEXTS)}", "name another"
-        )
+        allowed = f"a folder with files named *{', *'.join(TEXTS)}"
+        raise InputError("FILE", source, allowed, "name another")
     return files
 
 
@@ -113,7 +106,7 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
     """
     found = {}
     for name in SENSED:
-        said = getattr(rig.columns, name)
+        said = rig.columns[name]
         column = cells(table.frame, said.column, path, "fix [columns]")
         if not pd.api.types.is_numeric_dtype(column):
             column = column.mask(column.astype(str).str.strip().isin(rig.missing))
@@ -133,44 +126,38 @@ def _groups(table: RawTable, rig: Rig, path: Path) -> Floats:
 
 
 def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
-    counts = raw.provenance.get("rows", {})
+    record, counts = inspect_record(raw), raw.provenance.get("rows", {})
     dropped = {
         "without_foot_x": int(raw.provenance.get("rows_without_foot_x", 0)),
         "averaged": int(counts.get("averaged", 0)),
     }
     rows = len(raw.table) + sum(dropped.values())
-    record = inspect_record(raw)
     for reason in ("missing", "dropped", "clipped", "repeated"):
         dropped[reason] = int(getattr(record, reason).sum())
-    values = np.stack([raw.values(reading) for reading in CLAMP_READINGS])
-    values[:, ~record.sound] = np.nan
-    for row, reading in zip(values, CLAMP_READINGS, strict=True):
-        said = getattr(rig.columns, reading)
-        row -= said.scale(reading) * said.zero
-    foot_x = raw.values("foot_x")
-    before = values
-    zero, drift, known = np.full((3, len(CLAMP_READINGS)), np.nan)
-    taken, free, fault = np.full_like(values, np.nan), np.zeros(len(foot_x), dtype=bool), None
+    foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
+    said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
+    constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
+    before = np.where(record.sound, read - constant[:, None], np.nan)
+    values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
+    unknown = np.full(len(CLAMP_READINGS), np.nan)
+    zero = _Zero(unknown, unknown, unknown, np.full_like(before, np.nan))
     try:
-        check_channels(np.stack([raw.values(reading) for reading in CLAMP_READINGS]), name)
-        check_ahead(foot_x, values, name)
-        stated = _free(foot_x, rig)
-        if stated:
-            free = np.any([*stated.values()], axis=0)
-            for which, here in stated.items():
-                check_free(which, getattr(rig.passes, which), foot_x, values, here, name)
-            zero, drift, taken, known = _zero(foot_x, values, stated, name)
-            values = values - taken
-            check_drift(drift, values, name)
+        check_channels(read, name)
+        check_ahead(foot_x, before, name)
+        stretches = _free(foot_x, rig)
+        if stretches:
+            free = np.any([*stretches.values()], axis=0)
+            for which, here in stretches.items():
+                check_free(which, getattr(rig.passes, which), foot_x, before, here, name)
+            zero = _zero(foot_x, before, stretches, name)
+            values = before - zero.line
+            check_drift(zero.drift, values, name)
     except InputError as error:
         fault = error
-    table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
+    table = raw.table.assign(**_by_reading(values))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
-    of_zero, of_drift, of_known = (
-        dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift, known)
-    )
-    if np.isfinite(known).all():
-        provenance["zero_uncertainty"] = of_known
+    if np.isfinite(zero.uncertainty).all():
+        provenance["zero_uncertainty"] = _by_reading(zero.uncertainty.tolist())
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
     check_size("pass", readings)
     return Pass(
@@ -181,35 +168,41 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         dropped,
         int(counts.get("out_of_order", 0)),
         record,
-        of_zero,
-        of_drift,
+        _by_reading(zero.before.tolist()),
+        _by_reading(zero.drift.tolist()),
         before,
-        taken,
+        zero.line,
         free,
         fault,
     )
 
 
+def _by_reading(values: Iterable[Any]) -> dict[str, Any]:
+    return dict(zip(CLAMP_READINGS, values, strict=True))
+
+
 def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
     """The stretches before and after the contact that are stated."""
-    ends = {"free_before": 0, "free_after": -1}
-    stretches = {which: getattr(rig.passes, which) for which in ends}
+    stated = ("free_before", foot_x[0]), ("free_after", foot_x[-1])
     return {
-        which: np.abs(foot_x - foot_x[ends[which]]) <= stretch
-        for which, stretch in stretches.items()
-        if stretch > 0
+        which: np.abs(foot_x - end) <= getattr(rig.passes, which)
+        for which, end in stated
+        if getattr(rig.passes, which) > 0
     }
 
 
-def _zero(
-    foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """Zero, drift, the line between the two stretches, and its standard uncertainty.
+class _Zero(NamedTuple):
+    """Of the clamp readings before the contact, and how it drifts until after it."""
 
-    Of one stretch, which shows no drift, that is not known.
-    """
+    before: Floats  # shape (3,)
+    drift: Floats  # shape (3,)
+    uncertainty: Floats  # shape (3,); NaN of one stretch, which shows no drift
+    line: Floats  # shape (3, rows); from the one stretch to the other
+
+
+def _zero(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str) -> _Zero:
     means, places, uncertain = [], [], []
-    steps = [np.nanmin(np.diff(np.unique(row))) for row in values]  # of the converter
+    steps = np.array([np.nanmin(np.diff(np.unique(row))) for row in values])  # of the converter
     for which, here in free.items():
         sound = here & np.isfinite(values).all(axis=0)
         if sound.sum() < _FEWEST:
@@ -226,13 +219,12 @@ def _zero(
         with np.errstate(over="ignore"):  # such numbers are refused below
             between = np.std([x.mean(axis=1) for x in blocks], axis=0, ddof=1) / np.sqrt(_FEWEST)
             white = values[:, sound].std(axis=1, ddof=1) / np.sqrt(sound.sum())
-        uncertain.append(np.max([between, white, np.array(steps) / np.sqrt(12)], axis=0))
-    drift = means[-1] - means[0]
-    way = places[-1] - places[0]
+        uncertain.append(np.max([between, white, steps / np.sqrt(12)], axis=0))
+    drift, way = means[-1] - means[0], places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
     line = means[0][:, None] + drift[:, None] * share
     known = np.max(uncertain, axis=0) if len(free) > 1 else np.full_like(drift, np.nan)
-    return means[0], drift, line, known
+    return _Zero(means[0], drift, known, line)
 
 
 def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:

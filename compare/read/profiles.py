@@ -1,15 +1,15 @@
-"""The object of a case file: a table for all kinds of contour that the same numbers make."""
+"""The object of a case file: its kind, and what the function of that kind takes."""
 
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from analytic import Contour
 from analytic.problem.contours.kinds import CONTOURS
-from compare.read.quantities import Length, PerLength, Point, Points, Table
+from compare.read.quantities import Length, PerLength, Point, Points, Table, one_of_kinds
 
 
 class ProfileTable(Table):
-    """The object: a kind of contour, and what the function of that kind takes."""
+    """A contour that the file itself has, and a factor for all its lengths."""
 
     kind: str
     scale: Length = 1.0
@@ -20,48 +20,22 @@ class ProfileTable(Table):
         return CONTOURS[self.kind](**numbers).scaled(self.scale)
 
 
-class GraphTable(ProfileTable):
-    """See `analytic.catenary` and `analytic.parabola`."""
-
-    kind: Literal["catenary", "parabola"]
-    a: PerLength
-    c: Length
-
-
-class CircleTable(ProfileTable):
-    """See `analytic.circle`."""
-
-    kind: Literal["circle"]
-    radius: Length
-    lowest: Point
-
-
-class EllipseTable(ProfileTable):
-    """See `analytic.ellipse`."""
-
-    kind: Literal["ellipse"]
-    semi_axes: Point
-    lowest: Point
-
-
-class TwoCirclesTable(ProfileTable):
-    """See `analytic.two_circles`."""
-
-    kind: Literal["two-circles"]
-    right_radius: Length = 2.0
-    left_radius: Length = 0.5
-    lowest: Point = (0.0, 0.5)
-
-
-class PointsTable(ProfileTable):
-    """See `analytic.polygon` and `analytic.through_points`."""
-
-    kind: Literal["polygon", "points"]
-    points: Points
-
-
-Drawn = GraphTable | CircleTable | EllipseTable | TwoCirclesTable | PointsTable
-"""Contours that the file itself has."""
+if TYPE_CHECKING:
+    Drawn: TypeAlias = ProfileTable
+else:
+    Drawn = one_of_kinds(
+        ProfileTable,
+        CONTOURS.__getitem__,
+        {
+            "catenary": {"a": PerLength, "c": Length},
+            "parabola": {"a": PerLength, "c": Length},
+            "circle": {"radius": Length, "lowest": Point},
+            "ellipse": {"semi_axes": Point, "lowest": Point},
+            "two-circles": {"right_radius": Length, "left_radius": Length, "lowest": Point},
+            "polygon": {"points": Points},
+            "points": {"points": Points},
+        },
+    )
 
 
 class MeshTable(ProfileTable):

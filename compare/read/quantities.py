@@ -1,8 +1,11 @@
 """Values of a file: numbers, and texts with a unit; and tables of them, checked."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
-from typing import Annotated, Any, TypeVar
+from functools import reduce
+from inspect import Parameter, signature
+from operator import or_
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -13,6 +16,7 @@ from pydantic import (
     PlainSerializer,
     PlainValidator,
     ValidationError,
+    create_model,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -64,11 +68,7 @@ class Dimension:
         except (InputError, OverflowError):
             pass
         what, example = EXAMPLES[self.unit]
-        raise PydanticCustomError(
-            "quantity",
-            "a number, or a text with a known unit of {what}, as '{example}'",
-            {"what": what, "example": example},
-        )
+        raise _refused(f"a number, or a text with a known unit of {what}, as '{example}'")
 
 
 @dataclass(frozen=True)
@@ -79,16 +79,15 @@ class VaryingDimension(Dimension):
         """The number, or the pairs."""
         if not isinstance(value, list | tuple):
             return super().__call__(value)
-        number, length = Dimension(self.unit), Dimension("m")
-        pairs = [pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2]
-        if len(pairs) < len(value):
+        if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in value):
             what = EXAMPLES[self.unit][0]
-            raise PydanticCustomError(
-                "table",
-                "a number, or a list of pairs [arc length from the clamp, {what}]",
-                {"what": what},
-            )
-        return tuple((length(s), number(x)) for s, x in pairs)
+            raise _refused(f"a number, or a list of pairs [arc length from the clamp, {what}]")
+        number, length = super().__call__, Dimension("m")
+        return tuple((length(s), number(x)) for s, x in value)
+
+
+def _refused(allowed: str) -> PydanticCustomError:
+    return PydanticCustomError("quantity", "{allowed}", {"allowed": allowed})
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401  # a quantity, or pairs of them
@@ -142,6 +141,23 @@ class Table(BaseModel):
         return [field.alias or name for name, field in cls.model_fields.items()]
 
 
+def one_of_kinds(
+    base: type[Table],
+    made: Callable[[str], Callable[..., Any]],
+    keys: Mapping[str, Mapping[str, Any]],
+) -> Any:  # noqa: ANN401  # a union of tables
+    """What a table may be that has one of several kinds: beside that what makes the kind takes."""
+    kinds: list[Any] = []
+    for kind, own in keys.items():
+        takes = signature(made(kind)).parameters
+        fields: dict[str, Any] = {"kind": (Literal[kind], ...)}
+        for name, one in own.items():
+            default = takes[name].default
+            fields[name] = one, ... if default is Parameter.empty else default
+        kinds.append(create_model(kind, __base__=base, **fields))
+    return reduce(or_, kinds)
+
+
 _Schema = TypeVar("_Schema", bound=Table)
 
 
@@ -157,34 +173,36 @@ def validated(schema: type[_Schema], tables: Mapping[str, Any], place: KeyPlace)
 
 def _require_units(file: Table, place: KeyPlace) -> None:
     """Refuse dimensions with and without units side by side, also those left to a default."""
-    bare: list[list[str]] = []
-    united: list[list[str]] = []
-    left_out: list[list[str]] = []
+    found = [*_dimensions(file)]
+    united = [key for (_, key), number, _ in found if isinstance(number, InSI)]
+    bare = [(keys, stated) for keys, number, stated in found if isinstance(number, Bare)]
+    if united and bare:
+        keys, stated = max(bare, key=lambda one: one[1])  # the first that the file states
+        given, remedy = "missing", "add it: its default is a number without a unit"
+        if stated:
+            given, remedy = "without a unit", "write all dimensions with units, or none"
+        allowed = f"given with a unit, as {united[0]} is"
+        raise InputError(place(keys), given, allowed, remedy)
+
+
+def _dimensions(file: Table) -> Iterator[tuple[tuple[str, str], float, bool]]:
+    """Each number but 0 that has a unit or should, with its keys and whether the file states it."""
     for name in _WITH_UNITS:
         table: Any = getattr(file, name, None)
         # A shape whose scale has a unit is itself in units of the scale.
         relative = name == "profile" and isinstance(getattr(table, "scale", None), InSI)
         for key, value in table or ():
+            stated = key in table.model_fields_set
             for number in _numbers(value):
-                if isinstance(number, InSI):
-                    united.append([name, key])
-                elif not (isinstance(number, Bare) and number):  # 0 needs no unit
-                    continue
-                elif key in table.model_fields_set and (key == "scale" or not relative):
-                    bare.append([name, key])
-                elif key != "scale" and not relative:  # a scale of 1 is a factor
-                    left_out.append([name, key])
-    for wrong, given, remedy in (
-        (bare, "without a unit", "write all dimensions with units, or none"),
-        (left_out, "missing", "add it: its default is a number without a unit"),
-    ):
-        if wrong and united:
-            allowed = f"given with a unit, as {united[0][-1]} is"
-            raise InputError(place(wrong[0]), given, allowed, remedy)
+                factor = not stated if key == "scale" else relative  # a scale of 1 is a factor
+                if isinstance(number, InSI) or (isinstance(number, Bare) and number and not factor):
+                    yield (name, key), number, stated
 
 
-def _numbers(value: object) -> list[object]:
+def _numbers(value: object) -> Iterator[object]:
     """The numbers of a quantity, a pair of them, or a list of pairs."""
     if isinstance(value, list | tuple):
-        return [number for part in value for number in _numbers(part)]
-    return [value]
+        for part in value:
+            yield from _numbers(part)
+    else:
+        yield value

@@ -69,8 +69,7 @@ def read_measured(
     if direction not in (None, *get_args(Direction)):
         raise InputError("direction", repr(direction), "'left' or 'right'", "or leave it out")
     sweeps = read_sweeps(source, beam, columns, otherwise)
-    several = len(sweeps) > 1
-    chosen = [one for way, one in sweeps if not several or direction in (None, way)]
+    chosen = [one for way, one in sweeps if len(sweeps) == 1 or direction in (None, way)]
     if len(chosen) != 1:
         ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
         raise InputError(
@@ -117,34 +116,19 @@ def read_sweeps(
             readings = replace(readings, beam=given, provenance=provenance)
         sweeps = [(_way(readings), readings)]
     else:
-        raw = raw_table(source)
-        table, used, own = renamed(raw, columns, _called(source))
-        if used:
-            _check_beam(beam, given or otherwise)
+        raw, called, known = raw_table(source), _called(source), given or otherwise
+        table, used, own = renamed(raw, columns, called)
+        allowed = "given in units, as the columns are"
+        if used and known is None:
+            raise InputError("vibrissa", "none given", allowed, BEAM_WANTED)
+        if used and isinstance(beam, Path) and given is not None and not given.si:
+            plain = f"without units (length = {given.length:g})"
+            remedy = 'write length = "50 mm" and the like'
+            raise InputError(f"[beam] of {beam}", plain, allowed, remedy)
         units_used = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
-        provenance = {**units_used, **held}
-        beam_of_all = given or otherwise or assumed
-        source_ = f"measured, {_called(source)}"
-        sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, raw.place))
+        provenance, source_ = {**units_used, **held}, f"measured, {called}"
+        sweeps = _sweeps(Readings.of(table, known or assumed, source_, provenance, raw.place))
     return [(way, assumed_of(one) if one.beam is assumed else one) for way, one in sweeps]
-
-
-def _check_beam(beam: Path | Beam | None, found: Beam | None) -> None:
-    """Refuse columns with units beside no vibrissa, or a file with one in plain numbers."""
-    if found is None:
-        raise InputError(
-            "vibrissa",
-            "none given",
-            "given in units, as the columns are",
-            BEAM_WANTED,
-        )
-    if isinstance(beam, Path) and not found.si:
-        raise InputError(
-            f"[beam] of {beam}",
-            f"without units (length = {found.length:g})",
-            "given in units, as the columns are",
-            'write length = "50 mm" and the like',
-        )
 
 
 def _called(source: Source) -> str:
@@ -159,24 +143,19 @@ def raw_table(source: Source) -> RawTable:
         try:
             return RawTable(pd.DataFrame(dict(source)))
         except (ValueError, TypeError) as error:
-            raise InputError(
-                "readings", "no table", "columns of one length by name", str(error)
-            ) from error
+            allowed = "columns of one length by name"
+            raise InputError("readings", "no table", allowed, str(error)) from error
     path = Path(source)
     if path.suffix == ".parquet" or is_ours(path):
         return RawTable(Readings.read_table(path))
     if path.suffix.lower() not in TEXTS:
-        raise InputError(
-            "readings file", path, f"named *.parquet, *{', *'.join(TEXTS)}", "rename it"
-        )
+        allowed = f"named *.parquet, *{', *'.join(TEXTS)}"
+        raise InputError("readings file", path, allowed, "rename it")
     return read_text_table(path)
 
 
 def renamed(
-    raw: RawTable,
-    columns: Sequence[str],
-    called: str,
-    sensed: Sequence[str] = SENSED,
+    raw: RawTable, columns: Sequence[str], called: str, sensed: Sequence[str] = SENSED
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI."""
     table, place, units = raw
@@ -189,12 +168,9 @@ def renamed(
         column, unit = (rest, "") if rest in table else rest.rpartition(":")[::2]
         column, unit = (column, unit) if column else (unit, "")
         if name not in sensed or not column:
-            raise InputError(
-                "--column",
-                repr(text),
-                "NAME=COLUMN or NAME=COLUMN:UNIT",
-                f"NAME is one of {', '.join(sensed)}",
-            )
+            remedy = f"NAME is one of {', '.join(sensed)}"
+            allowed = "NAME=COLUMN or NAME=COLUMN:UNIT"
+            raise InputError("--column", repr(text), allowed, remedy)
         if name in named:
             raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
         named[name] = as_numbers(cells(table, column, called, "check --column"), column, place)
@@ -202,8 +178,8 @@ def renamed(
             used[name] = unit
         elif units.get(column):
             own[name] = units[column]
-    for name in [name for name in sensed if name in units and name not in named]:
-        if units[name]:
+    for name in sensed:
+        if units.get(name) and name not in named:
             named[name], own[name] = as_numbers(table[name], name, place), units[name]
     used |= own
     for name, unit in used.items():
@@ -263,15 +239,13 @@ def _turns(foot_x: Floats) -> list[int]:
 
 def _in_order(readings: Readings, way: Direction) -> Readings:
     """A sweep with its rows sorted, and those at one foot position averaged."""
-    table = readings.table
-    foot_x = table["foot_x"].to_numpy()
-    sign = -1 if way == "left" else 1
-    back = int((np.diff(foot_x) * sign < 0).sum())
+    table, rising = readings.table, way == "right"
+    steps = table["foot_x"].diff()
+    back = int((steps < 0 if rising else steps > 0).sum())
     if back:
-        table = table.iloc[np.argsort(sign * foot_x, kind="stable")]
-        foot_x = table["foot_x"].to_numpy()
-    station = np.concatenate([[0], np.cumsum(np.diff(foot_x) != 0)])
-    repeated = len(table) - int(station[-1]) - 1
+        table = table.sort_values("foot_x", kind="stable", ascending=rising)
+    station = table["foot_x"].diff().ne(0).cumsum().to_numpy()
+    repeated = len(table) - station[-1]
     if repeated:
         how = {
             name: "mean" if pd.api.types.is_float_dtype(column) else "first"
@@ -280,9 +254,5 @@ def _in_order(readings: Readings, way: Direction) -> Readings:
         table = table.groupby(station).agg(how)
     if not (back or repeated):
         return readings
-    counts = {"out_of_order": back, "averaged": repeated}
-    return replace(
-        readings,
-        table=table.reset_index(drop=True),
-        provenance={**readings.provenance, "rows": counts},
-    )
+    provenance = {**readings.provenance, "rows": {"out_of_order": back, "averaged": int(repeated)}}
+    return replace(readings, table=table.reset_index(drop=True), provenance=provenance)

@@ -33,6 +33,10 @@ class RigColumns(Table):
     force_y: RigColumn
     moment_z: RigColumn
 
+    def __getitem__(self, name: str) -> RigColumn:
+        column: RigColumn = getattr(self, name)
+        return column
+
 
 def _not_negative(value: float) -> float:
     """After the unit: a plain validator hides a field's own limits."""
@@ -64,19 +68,15 @@ class Rig(Table):
     # What the rig writes into a cell for which it has no number, as ``"OVL"``.
     missing: Annotated[list[str], Field(max_length=100, default_factory=list)]
 
-    @property
-    def in_units(self) -> bool:
-        """Whether the columns have units."""
-        return any(getattr(self.columns, name).unit for name in SENSED)
-
 
 def read_rig(path: Path) -> Rig:
     """The description of a rig."""
     file = TomlFile.read(path, "description of the rig")
     rig = validated(Rig, file.tables, file.place)
+    in_units = any(rig.columns[name].unit for name in SENSED)
     for name in SENSED:
-        unit = getattr(rig.columns, name).unit
-        if bool(unit) != rig.in_units or rig.in_units != rig.beam.build().si:
+        unit = rig.columns[name].unit
+        if bool(unit) != in_units or in_units != rig.beam.build().si:
             raise InputError(
                 file.place(["columns", name]),
                 f"unit {unit!r}" if unit else "without a unit",
@@ -85,6 +85,6 @@ def read_rig(path: Path) -> Rig:
             )
         if unit:
             unit_in_si(unit, DIMENSIONS[name])
-        if getattr(rig.columns, name).gain == 0:
+        if rig.columns[name].gain == 0:
             raise InputError(file.place(["columns", name, "gain"]), 0, "not 0", "correct it")
     return rig

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import AliasPath, BaseModel, Field
 
@@ -16,8 +16,8 @@ from compare.read.run_folder import read_stored, read_stored_if_there
 _Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
 
 
-def _of_candidate(*keys: str) -> AliasPath:
-    return AliasPath("candidate", *keys)
+def _at(*keys: str, **limits: Any) -> Any:  # noqa: ANN401  # as `Field`
+    return Field(validation_alias=AliasPath(*keys), **limits)
 
 
 class _Disagreement(BaseModel):
@@ -29,16 +29,14 @@ class RunRecord(BaseModel):
 
     verdict: str
     disagreement: dict[str, _Disagreement]
-    apart: Annotated[
-        float | None, Field(None, validation_alias=AliasPath("snap_off", "difference"))
-    ]
+    apart: float | None = _at("snap_off", "difference", default=None)
     # Share of stations whose phase is rightly judged from the clamp, in the worse sweep.
-    phases_right: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
+    phases_right: float | None = _at("phases", "agreement")
     running: str = "foot_x"  # the column over which it runs
-    source: Annotated[str, Field(validation_alias=_of_candidate("source"))]
-    length: Annotated[float, Field(gt=0, validation_alias=_of_candidate("beam", "length"))]
-    stations: Annotated[int, Field(gt=0, validation_alias=_of_candidate("stations"))]
-    provenance: Annotated[dict[str, Any], Field(validation_alias=_of_candidate("provenance"))]
+    source: str = _at("candidate", "source")
+    length: float = _at("candidate", "beam", "length", gt=0)
+    stations: int = _at("candidate", "stations", gt=0)
+    provenance: dict[str, Any] = _at("candidate", "provenance")
     folder: Path = Path()
     budget: Budget | Parts | None = None  # if it was measured; the parts are of one in space
 
@@ -79,14 +77,11 @@ class RunRecord(BaseModel):
         return {name: one.rms for name, one in self.disagreement.items()}
 
     @property
-    def worst(self) -> str:
-        """The reading that disagrees most."""
-        return max(self.rms, key=lambda name: _size(self.rms[name]))
-
-    @property
-    def error(self) -> float:
-        """Disagreement of that reading; infinite if nothing could be compared."""
-        return _size(self.rms[self.worst])
+    def worst(self) -> tuple[float, str]:
+        """The largest disagreement, infinite if nothing could be compared, and its reading."""
+        sizes = {name: math.inf if rms is None else rms for name, rms in self.rms.items()}
+        name = max(sizes, key=sizes.__getitem__)
+        return sizes[name], name
 
     @property
     def snap_off(self) -> float | None:
@@ -137,13 +132,10 @@ def read_runs(folder: Path) -> list[RunRecord]:
 
 
 def _read(file: Path) -> RunRecord:
-    run, budget = read_stored(file, RunRecord), file.with_name("budget.json")
-    split: Budget | Parts | None = None
-    if "force_z" in run.rms:
-        split = read_stored_if_there(budget, Parts)
-    else:
-        split = read_stored_if_there(budget, Budget)
-    return run.model_copy(update={"folder": file.parent, "budget": split})
+    run = read_stored(file, RunRecord)
+    kind: type[Budget] | type[Parts] = Parts if "force_z" in run.rms else Budget
+    budget = read_stored_if_there(file.with_name("budget.json"), kind)
+    return run.model_copy(update={"folder": file.parent, "budget": budget})
 
 
 def read_engines(folder: Path) -> list[EnginesRecord]:
@@ -155,7 +147,3 @@ def read_engines(folder: Path) -> list[EnginesRecord]:
 def _in_order(found: list[_Record]) -> list[_Record]:
     order = {name: i for i, name in enumerate(CASE_NAMES)}
     return sorted(found, key=lambda one: (order.get(one.case, len(order)), one.case))
-
-
-def _size(rms: float | None) -> float:
-    return math.inf if rms is None or math.isnan(rms) else rms

@@ -1,7 +1,8 @@
 """Case files of sweeps in space."""
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field
@@ -14,7 +15,15 @@ from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.motion import MotionTable
 from compare.read.profiles import Drawn
-from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
+from compare.read.quantities import (
+    FileName,
+    Length,
+    Point,
+    Table,
+    known_keys,
+    one_of_kinds,
+    validated,
+)
 from compare.read.tables import BeamTable, ContactTable
 from compare.read.toml import TomlFile
 from mujoco_models.settings import SpatialSettings
@@ -24,7 +33,7 @@ Axis = Annotated[tuple[float, float, float], Field(strict=False)]
 
 
 class BodyTable(Table):
-    """The body: a kind, which is the name of a function of `analytic.space`, and its numbers."""
+    """The body: a kind, which is the name of a function of `analytic.space`, and what it takes."""
 
     kind: str
 
@@ -34,37 +43,20 @@ class BodyTable(Table):
         return body
 
 
-class SphereTable(BodyTable):
-    """See `analytic.space.sphere`."""
-
-    kind: Literal["sphere"]
-    radius: Length
-    centre: Position
-
-
-class EllipsoidTable(BodyTable):
-    """See `analytic.space.ellipsoid`."""
-
-    kind: Literal["ellipsoid"]
-    semi_axes: Position
-    centre: Position
-    frame: Annotated[list[Axis], Field(min_length=3, max_length=3)] | None = None
-
-
-class CylinderTable(BodyTable):
-    """See `analytic.space.cylinder`."""
-
-    kind: Literal["cylinder"]
-    radius: Length
-    through: Position
-    axis: Axis
-
-
-class HullTable(BodyTable):
-    """See `analytic.space.polyhedron`."""
-
-    kind: Literal["polyhedron"]
-    points: list[Position]
+_Frame = Annotated[list[Axis], Field(min_length=3, max_length=3)] | None
+if TYPE_CHECKING:
+    Stated: TypeAlias = BodyTable
+else:
+    Stated = one_of_kinds(
+        BodyTable,
+        partial(getattr, space),
+        {
+            "sphere": {"radius": Length, "centre": Position},
+            "ellipsoid": {"semi_axes": Position, "centre": Position, "frame": _Frame},
+            "cylinder": {"radius": Length, "through": Position, "axis": Axis},
+            "polyhedron": {"points": list[Position]},
+        },
+    )
 
 
 class PrismTable(BodyTable):
@@ -112,34 +104,25 @@ class SpaceFile(Table):
     """What a case file of a sweep in space holds."""
 
     name: FileName | None = None  # what files and reports call the case
-    beam: BeamTable = BeamTable()  # the physics
-    body: Annotated[
-        SphereTable | EllipsoidTable | CylinderTable | HullTable | PrismTable | SolidTable,
-        Field(discriminator="kind"),
-    ]  # the physics
-    # The contour of a prism, as in the plane.
-    profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
-    path: PathTable  # the physics
-    contact: ContactTable = ContactTable()  # the physics
-    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
+    beam: BeamTable = BeamTable()
+    body: Annotated[Stated | PrismTable | SolidTable, Field(discriminator="kind")]
+    profile: Annotated[Drawn, Field(discriminator="kind")] | None = None  # of a prism
+    path: PathTable
+    contact: ContactTable = ContactTable()
     motion: MotionTable | None = None
-    # The numerics of MuJoCo's sweep.
     mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()
-    # Limits of agreement, each with its reason.
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def case(self, folder: Path, name: str) -> SpatialCase:
         """The whole problem."""
-        is_prism = isinstance(self.body, PrismTable)
-        if is_prism != (self.profile is not None):
-            raise InputError(
-                "[profile]",
-                "missing" if is_prism else "given",
-                "given for a prism, whose contour it is, and for nothing else",
-                "add it" if is_prism else 'leave it out, or take kind = "prism"',
-            )
         if isinstance(self.body, PrismTable) and self.profile is not None:
             body: Body = prism(self.profile.build(folder), self.body.axis, self.body.origin)
+        elif isinstance(self.body, PrismTable) or self.profile is not None:
+            given, remedy = "given", 'leave it out, or take kind = "prism"'
+            if self.profile is None:
+                given, remedy = "missing", "add it"
+            allowed = "given for a prism, whose contour it is, and for nothing else"
+            raise InputError("[profile]", given, allowed, remedy)
         else:
             body = self.body.build(folder)
         return SpatialCase(
@@ -154,7 +137,7 @@ class SpaceFile(Table):
 def job_in_space(file: TomlFile) -> SpaceJob:
     """The job that a case file of a sweep in space states."""
     found = validated(SpaceFile, file.tables, file.place)
-    limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     case = found.case(file.path.parent, found.name or name_of(file.path))
+    limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     motion = None if found.motion is None else found.motion.build(case.beam)
     return SpaceJob(case, found.mujoco, limits, motion=motion)

@@ -7,15 +7,7 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, Field
 
-from analytic import (
-    Beam,
-    Case,
-    Contour,
-    Direction,
-    InputError,
-    Sweep,
-    Whisk,
-)
+from analytic import Beam, Case, Contour, Direction, InputError, Sweep, Whisk
 from analytic.problem.support import Support, check_support, support_record
 from compare.judge.tolerances import Tolerances
 from compare.read.complaints import name_of
@@ -56,14 +48,8 @@ class BeamTable(Table):
     def build(self) -> Beam:
         """The vibrissa; its radius is by default the same share of its length as in `Beam()`."""
         radius = Beam().radius * self.length if self.radius is None else self.radius
-        return Beam(
-            self.length,
-            self.flexural_rigidity,
-            radius,
-            tip_radius=self.tip_radius,
-            natural_curvature=self.natural_curvature,
-            si=isinstance(self.length, InSI),
-        )
+        stated = self.model_dump() | {"radius": radius}
+        return Beam(**stated, si=isinstance(self.length, InSI))
 
 
 class SupportTable(Table):
@@ -98,7 +84,7 @@ class StationsTable(Table):
 
     def build(self) -> Sweep:
         """The sweep."""
-        return Sweep(self.stations, self.start, self.stop, self.direction)
+        return Sweep(**self.model_dump())
 
 
 class WhiskTable(Table):
@@ -111,7 +97,7 @@ class WhiskTable(Table):
 
     def build(self) -> Whisk:
         """The way of the clamp."""
-        return Whisk(self.foot_x, self.start, self.stop, self.stations)
+        return Whisk(**self.model_dump())
 
 
 class Physics(NamedTuple):
@@ -153,27 +139,25 @@ class EngineTable(Table):
 
 
 class CaseFile(Table):
-    """What a case file holds; dimensions in one system of units, SI if units are given."""
+    """What a case file holds; dimensions in one system of units, SI if units are given.
+
+    A whisk stands for the sweep, a model of the user's own for ours; without a motion MuJoCo's beam
+    is at rest at every station.
+    """
 
     name: FileName | None = None  # what files and reports call the case
-    beam: BeamTable = BeamTable()  # the physics
-    support: SupportTable = SupportTable()  # the physics
-    contact: ContactTable = ContactTable()  # the physics
-    weight: WeightTable = WeightTable()  # the physics
-    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
-    sweep: StationsTable = StationsTable()  # the physics
-    whisk: WhiskTable | None = None  # the physics; instead of a sweep
-    # The numerics of the simulation.
+    beam: BeamTable = BeamTable()
+    support: SupportTable = SupportTable()
+    contact: ContactTable = ContactTable()
+    weight: WeightTable = WeightTable()
+    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]
+    sweep: StationsTable = StationsTable()
+    whisk: WhiskTable | None = None
     mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
-    # A model of the user's own, if it is to be swept instead of ours.
     model: ModelTable | None = None
-    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     motion: MotionTable | None = None
-    # Which engines sweep it at rest: names between commas, of `engines.list_engines`.
     engine: EngineTable = EngineTable()
-    # How far two sweeps of the case may disagree (`compare.read.limits`).
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
-    # How well the inputs are known (`compare.read.uncertainty`).
     uncertainty: UncertaintyTable = UncertaintyTable()
 
     def physics(self, folder: Path) -> Physics:
@@ -205,14 +189,14 @@ class CaseFile(Table):
             )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)
-            if is_mesh and beam.si and "scale" not in self.profile.model_fields_set:
-                raise InputError(
-                    "profile.scale",
-                    "missing, so the mesh file's numbers are taken for metres",
-                    'the size of their unit, scale = "1 mm" for millimetres',
-                    f"add it ({error})",
-                ) from error
-            raise
+            if not is_mesh or not beam.si or "scale" in self.profile.model_fields_set:
+                raise
+            raise InputError(
+                "profile.scale",
+                "missing, so the mesh file's numbers are taken for metres",
+                'the size of their unit, scale = "1 mm" for millimetres',
+                f"add it ({error})",
+            ) from error
 
 
 def _support(clamp: SupportTable, contact: ContactTable, weight: WeightTable) -> Support:
@@ -224,18 +208,9 @@ class BeamFile(Table):
     """A file of which only the vibrissa counts, how it is held, how it rubs and what it weighs."""
 
     beam: BeamTable
-    support: SupportTable | None = None
-    contact: ContactTable | None = None
-    weight: WeightTable | None = None
-
-    def provenance(self) -> dict[str, Any]:
-        """What the provenance of measured readings says of clamp and contact."""
-        if not (self.support or self.contact or self.weight):
-            return {}
-        clamp, contact = self.support or SupportTable(), self.contact or ContactTable()
-        held = _support(clamp, contact, self.weight or WeightTable())
-        check_support(held, self.beam.build())
-        return {"support": {}} | support_record(held)
+    support: SupportTable = SupportTable()
+    contact: ContactTable = ContactTable()
+    weight: WeightTable = WeightTable()
 
 
 def job_in_the_plane(file: TomlFile) -> Job:
@@ -245,7 +220,6 @@ def job_in_the_plane(file: TomlFile) -> Job:
     if isinstance(given, list) and given:  # several objects, [[profile]]
         each = [{**file.tables, "profile": one} for one in given]
     found, *others = (validated(CaseFile, tables, file.place) for tables in each)
-    limits = tolerances_of(found.tolerances, file.place, Tolerances)
     case = found.case(file.path.parent, found.name or name_of(file.path), others)
     moved, own = found.motion, found.model
     motion = None if moved is None else moved.build(case.beam)
@@ -254,7 +228,7 @@ def job_in_the_plane(file: TomlFile) -> Job:
     return Job(
         case,
         found.mujoco,
-        limits,
+        tolerances_of(found.tolerances, file.place, Tolerances),
         motion,
         uncertainties_of(found.uncertainty, case, file.place),
         None if own is None else own.build(file.path.parent),
@@ -264,13 +238,16 @@ def job_in_the_plane(file: TomlFile) -> Job:
 
 
 def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
-    """The vibrissa of a file's ``[beam]``, ``[support]``, ``[contact]`` and ``[weight]`` tables.
+    """The vibrissa of a file, and what provenance says of its clamp, contact and weight.
 
     Other tables do not matter.
     """
     file = TomlFile.read(path, "beam file")
-    if "beam" not in file.tables:
-        raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
     known = {name: file.tables[name] for name in BeamFile.model_fields if name in file.tables}
-    found = validated(BeamFile, known, file.place)
-    return found.beam.build(), found.provenance()
+    found = validated(BeamFile, {"beam": file.table("beam"), **known}, file.place)
+    beam = found.beam.build()
+    if len(known) == 1:
+        return beam, {}
+    held = _support(found.support, found.contact, found.weight)
+    check_support(held, beam)
+    return beam, {"support": {}} | support_record(held)

@@ -52,6 +52,12 @@ class TomlFile:
             raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
         return cls(path, text, tables)
 
+    def table(self, name: str) -> Any:  # noqa: ANN401  # whatever it is
+        """A table that there has to be."""
+        if name not in self.tables:
+            raise InputError(f"{self.path}: [{name}]", "missing", "given", "add the table")
+        return self.tables[name]
+
     def place(self, keys: Sequence[str]) -> str:
         """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``."""
         known = (self._line(keys[:depth]) for depth in range(len(keys), 0, -1))

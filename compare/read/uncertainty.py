@@ -55,16 +55,13 @@ def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Un
         return None
     stated = table.__pydantic_extra__
     inputs = {name: _input(name, said, case, place) for name, said in stated.items()}
-    for name in table.noise:
+    noise = {}
+    for name, said in table.noise.items():
+        here = place([_TABLE, "noise", name])
         if name not in CLAMP_READINGS:
-            here, known = place([_TABLE, "noise", name]), ", ".join(CLAMP_READINGS)
-            raise InputError(
-                here, "unknown", f"a reading, one of {known}", near(name, CLAMP_READINGS)
-            )
-    noise = {
-        name: _size(said, DIMENSIONS[name], 0.0, case, place([_TABLE, "noise", name]))
-        for name, said in table.noise.items()
-    }
+            known = f"a reading, one of {', '.join(CLAMP_READINGS)}"
+            raise InputError(here, "unknown", known, near(name, CLAMP_READINGS))
+        noise[name] = _size(said, DIMENSIONS[name], 0.0, case, here)
     try:
         return Uncertainties(inputs, noise, tuple(table.correlations))
     except InputError as error:
@@ -78,10 +75,9 @@ def _input(name: str, said: InputTable, case: Case, place: KeyPlace) -> Input:
         allowed = f"left out: the case has no {name} that is a number"
         why = "a rigid clamp has no stiffness, a cylinder no radius of its tip"
         raise InputError(place([_TABLE, name]), "given", allowed, why)
-    if said.within is not None:
-        here = place([_TABLE, name, "within"])
-        return Input.within(_size(said.within, dimension, value, case, here))
-    return Input(_size(said.standard, dimension, value, case, place([_TABLE, name, "standard"])))
+    which, made = ("standard", Input) if said.within is None else ("within", Input.within)
+    here = place([_TABLE, name, which])
+    return made(_size(getattr(said, which), dimension, value, case, here))
 
 
 def _size(said: Size, dimension: str, nominal: float, case: Case, here: str) -> float:

@@ -13,9 +13,14 @@ from compare.show.style import PHASE_LETTERS
 _RMS = "relative to each reading's largest magnitude"
 
 
+def left_over(found: Budget) -> str:
+    """What stays unexplained."""
+    return f"{short(found.left.rms)} +- {short(found.left.uncertainty)}"
+
+
 def headline(found: Budget) -> str:
     """What a budget comes to, in one sentence."""
-    rest = f"{short(found.left.rms)} +- {short(found.left.uncertainty)}"
+    rest = left_over(found)
     if found.closes:
         remains = f"at most {rest} stays unexplained, and the budget closes"
     elif found.undecided:
@@ -27,37 +32,29 @@ def headline(found: Budget) -> str:
 
 def budget_summary(found: Budget | MotionBudget) -> Iterator[Block]:
     """The parts, what they come to, and the suspects."""
+    yield _parts_table(found)
     if isinstance(found, MotionBudget):
-        yield from _in_motion(found)
+        closes = "closes" if found.closes else "does not close"
+        yield Text(f"The budget {closes}; {found.blame} dominates.")
+        yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
+        if found.left_out:
+            yield Text(f"Diverged, and left out: {', '.join(found.left_out)}.")
         return
-    yield parts_table(found, found.checks)
     yield Text("", strong=f"{headline(found)}.")
     if found.suspects:
         yield Items([_suspect(one) for one in found.suspects])
 
 
-def _in_motion(found: MotionBudget) -> Iterator[Block]:
-    yield parts_table(found)
-    closes = "closes" if found.closes else "does not close"
-    yield Text(f"The budget {closes}; {found.blame} dominates.")
-    yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
-    if found.left_out:
-        yield Text(f"Diverged, and left out: {', '.join(found.left_out)}.")
-
-
-def parts_table(
-    found: Budget | MotionBudget, checks: Mapping[str, Mapping[str, float]] | None = None
-) -> Table:
+def _parts_table(found: Budget | MotionBudget) -> Table:
     """The parts with their uncertainties, the whole, and what the closed form says of some."""
     rows: list[Sequence[str]] = [
         (name, *(f"{short(one.rms)} ± {short(one.uncertainty)}" for one in parts.values()))
         for name, parts in found.parts.items()
     ]
-    rows.append(("disagreement", *(short(x) for x in found.disagreement.values())))
-    rows += [
-        (f"{name}, closed form alone", *(short(x) for x in sizes.values()))
-        for name, sizes in (checks or {}).items()
-    ]
+    rows.append(("disagreement", *map(short, found.disagreement.values())))
+    checks = found.checks if isinstance(found, Budget) else {}
+    for name, sizes in checks.items():
+        rows.append((f"{name}, closed form alone", *map(short, sizes.values())))
     return Table(
         f"Root mean square and uncertainty over {found.stations} stations, {_RMS}",
         ("part", *CLAMP_READINGS),

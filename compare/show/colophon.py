@@ -4,18 +4,22 @@ import platform
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import suppress
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-_PACKAGES = {"vibrissa-testbed": "", "numpy": "NumPy", "scipy": "SciPy", "mujoco": "MuJoCo"}
+_PACKAGES = {"vibrissa-testbed": "vibrissa-testbed", "numpy": "NumPy", "scipy": "SciPy",
+             "mujoco": "MuJoCo"}  # fmt: skip
 _PATIENCE = 5  # s; a repository on a slow disk is no reason to wait
 
 
 def colophon() -> dict[str, str]:
     """What is known of the process that makes a page."""
+    program, *words = sys.argv
     found = {
-        "command": _command(),
+        "command": "" if program in ("", "-c") else shlex.join([Path(program).name, *words]),
         "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z"),
         "versions": ", ".join(_versions()),
         "commit": _commit(),
@@ -23,20 +27,11 @@ def colophon() -> dict[str, str]:
     return {name: value for name, value in found.items() if value}
 
 
-def _command() -> str:
-    if not sys.argv[0] or sys.argv[0] == "-c":
-        return ""
-    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
-
-
-def _versions() -> list[str]:
-    found = [f"Python {platform.python_version()}"]
+def _versions() -> Iterator[str]:
+    yield f"Python {platform.python_version()}"
     for package, name in _PACKAGES.items():
-        try:
-            found.append(f"{name or package} {version(package)}")
-        except PackageNotFoundError:
-            continue
-    return found
+        with suppress(PackageNotFoundError):
+            yield f"{name} {version(package)}"
 
 
 def _commit() -> str:

@@ -10,7 +10,7 @@ from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
 from compare.show.document import Block, Document, Table, Text, Tile, Verdict, sections
 from compare.show.numbers import place, quantity, sentence, short, words
-from compare.show.style import ALONG, PHASE_LETTERS
+from compare.show.style import ALONG, PHASE_LETTERS, Along
 
 # Of a source's provenance; they are drawn instead.
 _BULKY = ("contour", "others", "events", "joints", "path")
@@ -27,7 +27,7 @@ _LIMITED = {
 _PLACES = ("transition", "snap_off", "lateness", "event")  # of places along the sweep
 
 
-def comparison_document(
+def document(
     found: Comparison | SpatialComparison,
     about: str,
     verdict: Verdict,
@@ -35,22 +35,21 @@ def comparison_document(
     *parts: tuple[str, str, Iterable[Block]],
 ) -> Document:
     """All that there is to say of a comparison, the sections of its own before the common ones."""
-    reference, candidate = found.reference, found.candidate
-    beam = reference.beam
+    reference, beam = found.reference, found.reference.beam
     length = quantity(beam.length, "length", beam)
     force = quantity(beam.force_unit, "force", beam)
     moment = quantity(beam.moment_unit, "moment", beam)
     own = "" if beam.si else " of the readings' own units"
+    case = reference.provenance.get("case") or "a sweep"
     return Document(
-        f"{reference.provenance.get('case') or 'a sweep'}: "
-        f"{candidate.source} against {reference.source}",
+        f"{case}: {found.candidate.source} against {reference.source}",
         f"{about} Lengths are given in L = {length}, forces in EI/L² = {force} and moments in "
         f"EI/L = {moment}{own}.",
         verdict,
         sections(
             *parts,
             ("tolerances", "Tolerances, and why", _limits(found)),
-            ("settings", "Settings and versions", [_settings(reference, candidate)]),
+            ("settings", "Settings and versions", [_settings(reference, found.candidate)]),
         ),
         [*tiles],
     )
@@ -59,14 +58,15 @@ def comparison_document(
 def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -> Verdict:
     """Whether the two agree, and why not."""
     agrees = "agrees" if found.agrees else "disagrees"
-    return Verdict(
-        found.agrees,
-        f"{found.candidate.source} {agrees} with {found.reference.source}.",
-        said,
-        "" if found.agrees else sentence(why),
-        found.failures,
-        [sentence(remark) for remark in found.remarks],
-    )
+    claim = f"{found.candidate.source} {agrees} with {found.reference.source}."
+    likely = "" if found.agrees else sentence(why)
+    remarks = [*map(sentence, found.remarks)]
+    return Verdict(found.agrees, claim, said, likely, found.failures, remarks)
+
+
+def along(found: Comparison | SpatialComparison) -> Along:
+    """What is said of the column over which the sweeps run."""
+    return ALONG[found.reference.running]
 
 
 def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
@@ -74,7 +74,7 @@ def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
     one = found.disagreement[worst]
     if not one.stations:
         return
-    at = ALONG[found.reference.running].at.format(place(one.at / found.reference.running_unit[0]))
+    at = along(found).at.format(place(one.at / found.reference.running_unit[0]))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
     yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
 
@@ -83,19 +83,18 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
     """How far apart the two are, reading by reading and by phase, if any station shows it."""
     if not found.stations:
         return
-    beam, (size, along) = found.reference.beam, found.reference.running_unit
+    beam, (size, unit_along) = found.reference.beam, found.reference.running_unit
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
+    units = {"f": (beam.force_unit, "EI/L²"), "m": (beam.moment_unit, "EI/L")}
     rows = []
     for name, one in found.disagreement.items():
-        unit, symbol = beam.force_unit, "EI/L²"
-        if name.startswith("moment"):
-            unit, symbol = beam.moment_unit, "EI/L"
+        unit, symbol = units[name[0]]
         row = {"reading": name, "rms": short(one.rms)}
         if isinstance(found, SpatialComparison):
             row["allowed"] = short(found.tolerances.of(name, "rms"))
         row |= {f"rms, {PHASE_LETTERS[p]}": short(one.rms_by_phase.get(p)) for p in phases}
-        row |= {"max": short(one.max), f"max at / {along}": place(one.at / size)}
+        row |= {"max": short(one.max), f"max at / {unit_along}": place(one.at / size)}
         if isinstance(found, Comparison):
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})

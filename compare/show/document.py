@@ -146,15 +146,9 @@ class Document:
     def pictures(self) -> Iterator[Picture]:
         """All pictures, in order."""
         for section in self.sections:
-            yield from _pictures(section.blocks)
-
-
-def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
-    for block in blocks:
-        if isinstance(block, Picture):
-            yield block
-        elif isinstance(block, Beside):
-            yield from _pictures(block.blocks)
+            for block in section.blocks:
+                within = block.blocks if isinstance(block, Beside) else [block]
+                yield from (one for one in within if isinstance(one, Picture))
 
 
 def sections(*parts: tuple[str, str, Iterable[Block]]) -> list[Section]:

@@ -71,14 +71,10 @@ def _drawn(figure: Figure, kind: str, **options: Any) -> bytes:  # noqa: ANN401
     with warnings.catch_warnings():
         # A character that the font lacks is drawn as a box; the page's text has it.
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        _lay_out(figure)
+        # Its parts are placed once for all pictures of it: `savefig` draws each twice to do it.
+        layout = figure.get_layout_engine()
+        if layout is not None:
+            layout.execute(figure)
+            figure.set_layout_engine(None)
         figure.savefig(buffer, format=kind, **options)
     return buffer.getvalue()
-
-
-def _lay_out(figure: Figure) -> None:
-    """Place its parts, once for all pictures of it: `savefig` draws each one twice to do it."""
-    layout = figure.get_layout_engine()
-    if layout is not None:
-        layout.execute(figure)
-        figure.set_layout_engine(None)

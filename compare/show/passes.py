@@ -65,19 +65,13 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
 
 def passes_document(passes: Sequence[Pass], found: Sequence[Repeats]) -> dict[str, Any]:
     """What ``passes.json`` holds."""
+    said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift")
     return {
         "passes": [
             {
-                "name": one.name,
-                "direction": one.direction,
-                "rows": one.rows,
-                "kept": one.kept,
-                "dropped": one.dropped,
-                "sorted": one.sorted,
+                **{name: getattr(one, name) for name in said},
                 "gaps": one.record.gaps,
                 "widest_step": one.record.widest,
-                "zero": one.zero,
-                "drift": one.drift,
             }
             for one in passes
         ],

@@ -8,14 +8,8 @@ from analytic import CLAMP_READINGS, PHASES, Beam
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
-from compare.show.budgets import budget_summary, convergence_table, phases_table
-from compare.show.comparison_page import (
-    agreement,
-    apart_table,
-    comparison_document,
-    places_table,
-    sizes,
-)
+from compare.show import comparison_page as common
+from compare.show.budgets import budget_summary, convergence_table, left_over, phases_table
 from compare.show.document import (
     Beside,
     Block,
@@ -28,16 +22,11 @@ from compare.show.document import (
     Verdict,
     tiles_line,
 )
+from compare.show.figures import readings as drawn
 from compare.show.figures.budget_bars import bars, convergence_picture
 from compare.show.figures.geometry import geometry
-from compare.show.figures.readings import (
-    around_snap_off,
-    phase_criterion,
-    reading_panel,
-    validation_picture,
-)
 from compare.show.numbers import percent, place, quantity, sentence, short, words
-from compare.show.style import ALONG, PHASE_LETTERS, SYMBOLS, Along
+from compare.show.style import PHASE_LETTERS, SYMBOLS
 from compare.show.validity import validation_claim, validation_lines, validation_tables
 from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
 
@@ -48,19 +37,15 @@ def plane_document(
     """All that there is to say of a comparison in the plane."""
     contour = comparison.reference.provenance.get("profile") or "Contour not recorded"
     found = plane_verdict(comparison, budget)
-    return comparison_document(
+    remarks = [*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
+    validation = "Validation: the disagreement against its uncertainty"
+    return common.document(
         comparison,
         f"{contour}; the figures rest on {comparison.stations} stations.",
-        replace(
-            found, remarks=[*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
-        ),
+        replace(found, remarks=remarks),
         plane_tiles(comparison, budget),
-        ("budget", "What the disagreement is made of", _parts(comparison, budget)),
-        (
-            "validation",
-            "Validation: the disagreement against its uncertainty",
-            _validation(comparison),
-        ),
+        ("budget", "What the disagreement is made of", _parts(budget)),
+        ("validation", validation, _validation(comparison)),
         ("apart", "How far apart, reading by reading", _apart(comparison)),
         ("sweep", "The sweep", _sweep(comparison, film)),
         ("phases", "Phases judged from the clamp", _phases(comparison)),
@@ -74,7 +59,7 @@ def plane_summary(comparison: Comparison) -> Iterator[Block]:
     yield plane_verdict(comparison)
     yield from map(Text, validation_lines(comparison))
     yield tiles_line(plane_tiles(comparison))
-    yield from apart_table(comparison)
+    yield from common.apart_table(comparison)
 
 
 def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:
@@ -87,7 +72,7 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
         said, likely = sentence(why(comparison)), said
     elif budget is None:
         likely = why(comparison)
-    found = agreement(comparison, said, likely)
+    found = common.agreement(comparison, said, likely)
     if comparison.validation is None:
         return found
     claim = f"{validation_claim(comparison.validation)} By the tolerances, {found.claim}"
@@ -96,7 +81,7 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
     """The numbers that matter."""
-    yield from sizes(comparison, worst_reading(comparison))
+    yield from common.sizes(comparison, worst_reading(comparison))
     apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
     shift = "none" if apart is None else short(apart / size, f" {unit}")
     yield Tile("snap-off apart", shift, "candidate less reference")
@@ -113,13 +98,12 @@ def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterato
     if noise:
         yield Tile("noise", short(noise), "of the noisiest reading, allowed for in the limits")
     if budget is not None:
-        rest = f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
         still_open = "is undecided" if budget.undecided else "does not close"
         said = "closes" if budget.closes else still_open
-        yield Tile("stays unexplained", rest, f"the budget {said}")
+        yield Tile("stays unexplained", left_over(budget), f"the budget {said}")
 
 
-def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
+def _parts(budget: Budget | None) -> Iterator[Block]:
     if budget is None:
         return
     table, *said = budget_summary(budget)
@@ -147,25 +131,25 @@ def _validation(comparison: Comparison) -> Iterator[Block]:
     shows = "E = S - D and twice its standard uncertainty over the foot position"
     yield Picture(
         "validation",
-        {shows: partial(validation_picture, comparison, found)},
+        {shows: partial(drawn.validation_picture, comparison, found)},
         "Dots: E at each station. Blue: twice its standard uncertainty, which 95 % of the dots of "
         "a right model are within, all on one side if an input is off. Grey: noise alone.",
     )
 
 
 def _apart(comparison: Comparison) -> Iterator[Block]:
-    over = _along(comparison).name
+    over = common.along(comparison).name
     shows = f"{{}} of both models over the {over}, and their difference"
     yield Picture(
         "reading",
-        {shows.format(name): partial(reading_panel, comparison, name) for name in SYMBOLS},
+        {shows.format(name): partial(drawn.reading_panel, comparison, name) for name in SYMBOLS},
         "Clamp force and moment, and the contact's arc length reconstructed from them, over the "
         f"{over}. Line: {comparison.reference.source}. Dots: "
         f"{comparison.candidate.source}. Shaded: the reference's phases. Below: candidate less "
         "reference, in the same unit.",
         "panels",
     )
-    yield from apart_table(comparison)
+    yield from common.apart_table(comparison)
     counts = comparison.alignment.counts.items()
     counted = [(words(why), str(n)) for why, n in counts if n or why == "compared"]
     removed = [("offset of the candidate's foot", _offset(comparison) or "none")]
@@ -173,9 +157,12 @@ def _apart(comparison: Comparison) -> Iterator[Block]:
         (f"noise of {name}, of its largest magnitude", short(level) if level else "none")
         for name, level in comparison.noise.level.items()
     ]
-    stations = Table("What became of the candidate's stations", (), counted)
-    caption = "Removed before the comparison, or allowed for in its limits"
-    yield Beside([stations, Table(caption, (), removed)])
+    yield Beside(
+        [
+            Table("What became of the candidate's stations", (), counted),
+            Table("Removed before the comparison, or allowed for in its limits", (), removed),
+        ]
+    )
 
 
 def _sweep(comparison: Comparison, film: Film | None) -> Iterator[Block]:
@@ -196,19 +183,19 @@ def _sweep(comparison: Comparison, film: Film | None) -> Iterator[Block]:
 
 
 def _phases(comparison: Comparison) -> Iterator[Block]:
-    shows = f"Phase B's criterion and the contact's arc length over the {_along(comparison).name}"
+    along = common.along(comparison)
+    shows = f"Phase B's criterion and the contact's arc length over the {along.name}"
     yield Picture(
         "phases",
-        {shows: partial(phase_criterion, comparison)},
+        {shows: partial(drawn.phase_criterion, comparison)},
         "In Phase B criterion (26) of Will, Steigenberger and Behn (2014) is zero, in Phase A the "
         "contact is at the tip; each station goes to the phase whose condition it meets better, in "
         "units of the readings' own noise.",
     )
     caption = (
-        f"{_along(comparison).places} where one phase gives way to the next, found from the clamp "
-        "readings alone"
+        f"{along.places} where one phase gives way to the next, found from the clamp readings alone"
     )
-    transitions = places_table(comparison, caption, comparison.transitions)
+    transitions = common.places_table(comparison, caption, comparison.transitions)
     absent = [Text(sentence(line), aside=True) for line in absent_transitions(comparison)]
     yield Beside([transitions, *absent, *_confusions(comparison)])
 
@@ -222,24 +209,25 @@ def _confusions(comparison: Comparison) -> Iterator[Table]:
         if which in right:
             said = f"{percent(right[which])} of stations judged rightly"
         numbers = zip(letters, counts.to_numpy(), strict=True)
-        rows = [(letter, *(str(n) for n in row)) for letter, row in numbers]
+        rows = [(letter, *map(str, row)) for letter, row in numbers]
         yield Table(f"{comparison.judged[which].readings.source}: {said}", head, rows)
 
 
 def _snap_off(comparison: Comparison) -> Iterator[Block]:
     found = comparison.snap_off
     caption = (
-        f"{_along(comparison).places} where the vibrissa lets go: as its source recorded it, else "
-        "between the last station in contact and the next"
+        f"{common.along(comparison).places} where the vibrissa lets go: as its source recorded it, "
+        "else between the last station in contact and the next"
     )
-    yield places_table(comparison, caption, {"snap-off": found})
+    yield common.places_table(comparison, caption, {"snap-off": found})
     if found.reference is None and found.candidate is None:
         yield Text("Neither sweep has one.")
         return
     shows = "{} of both models around the snap-off, and their difference"
+    near = partial(drawn.around_snap_off, comparison)
     yield Picture(
         "snap-off",
-        {shows.format(name): partial(around_snap_off, comparison, name) for name in CLAMP_READINGS},
+        {shows.format(name): partial(near, name) for name in CLAMP_READINGS},
         "The readings grow like a square root towards the snap-off (dotted), so a small error of "
         "its place is a large one of theirs. Between its last stations the reference's line "
         "follows that square root.",
@@ -257,7 +245,7 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
         f"{budget.order:.2f}. The lines below are fitted to the whole disagreement: {falls}."
     )
     shows = "Disagreement against the number of segments, both logarithmic"
-    drawn = Picture(
+    lines = Picture(
         "convergence",
         {shows: partial(convergence_picture, budget.convergence)},
         "Disagreement with the reference against the number of segments; dashed is second order. A "
@@ -265,12 +253,7 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
         "the object.",
         "middle",
     )
-    yield Beside([drawn, convergence_table(budget.convergence)])
-
-
-def _along(comparison: Comparison) -> Along:
-    """What is said of the column over which the sweeps run."""
-    return ALONG[comparison.reference.running]
+    yield Beside([lines, convergence_table(budget.convergence)])
 
 
 def _offset(comparison: Comparison) -> str:

@@ -1,5 +1,6 @@
 """One page about all runs in a folder, every word of it from measured numbers."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -8,6 +9,7 @@ from analytic import CLAMP_READINGS, InputError
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.split_space import Parts
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
+from compare.show.budgets import left_over
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
 from compare.show.numbers import percent, short
 from compare.show.side_by_side import outcomes_table, parts_table
@@ -45,33 +47,33 @@ def runs_document(folder: Path) -> Document:
 
 def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
     """The worst of all runs, and how many budgets close."""
-    compared = [run for run in runs if run.error < float("inf")]
+    compared = [run for run in runs if run.worst[0] < math.inf]
     if compared:
-        worst = max(compared, key=lambda run: run.error)
+        run = max(compared, key=lambda run: run.worst[0])
+        error, name = run.worst
         yield (
-            f"The largest rms is {short(worst.error)} of the largest magnitude ({worst.worst}, "
-            f"{worst.case}, {worst.beam})."
+            f"The largest rms is {short(error)} of the largest magnitude ({name}, {run.case}, "
+            f"{run.beam})."
         )
     budgets = [run.budget for run in runs if isinstance(run.budget, Budget)]
     if budgets:
-        rest = max((one.left for one in budgets), key=lambda part: part.rms)
+        worst_explained = max(budgets, key=lambda one: one.left.rms)
         closed = sum(one.closes for one in budgets)
         yield (
-            f"{closed} of {len(budgets)} budgets close; at most {short(rest.rms)} +- "
-            f"{short(rest.uncertainty)} is unexplained."
+            f"{closed} of {len(budgets)} budgets close; at most {left_over(worst_explained)} is "
+            "unexplained."
         )
 
 
 def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
-    if not runs:
-        return
-    yield _runs_table(runs)
-    yield Text(
-        "Disagreements are rms over the stations in contact, of each reading's largest magnitude. "
-        f"A budget closes if what is unexplained is small and within its uncertainty (and "
-        f"{short(UNRESOLVED)}).",
-        aside=True,
-    )
+    if runs:
+        yield _runs_table(runs)
+        yield Text(
+            "Disagreements are rms over the stations in contact, of each reading's largest "
+            "magnitude. A budget closes if what is unexplained is small and within its uncertainty "
+            f"(and {short(UNRESOLVED)}).",
+            aside=True,
+        )
 
 
 def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
@@ -94,8 +96,7 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
             *(short(run.rms[name]) if name in run.rms else "" for name in components),
             short(run.snap_off, " rad" if run.running == "clamp_angle" else ""),
             "none" if run.phases_right is None else percent(run.phases_right),
-            "not measured" if run.budget is None else _largest_part(run.budget),
-            "not measured" if run.budget is None else _left(run.budget),
+            *_largest_and_left(run.budget),
             "" if run.seconds_a_station is None else f"{1e3 * run.seconds_a_station:.2g}",
         )
         for run in runs
@@ -107,21 +108,21 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
     return Table("Each run against its closed form", head, rows, words=(0, 1, len(head) - 3))
 
 
-def _left(budget: Budget | Parts) -> str:
+def _largest_and_left(budget: Budget | Parts | None) -> tuple[str, str]:
+    """The largest part, and what stays unexplained."""
+    if budget is None:
+        return "not measured", "not measured"
     if isinstance(budget, Parts):
-        return short(budget.unexplained)
-    return f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
-
-
-def _largest_part(budget: Budget | Parts) -> str:
-    if isinstance(budget, Parts):
-        return max("discretisation", "softness", "unexplained", key=budget._asdict().__getitem__)
+        sizes = budget._asdict()
+        largest = max("discretisation", "softness", "unexplained", key=sizes.__getitem__)
+        return largest, short(budget.unexplained)
     said = budget.blame
     if budget.blame == "discretisation":
         said += f" of order {budget.order:.2f}"
     said += "".join(f", suspect: {one.name} {one.size} off" for one in budget.suspects[:1])
-    still_open = "undecided" if budget.undecided else "does not close"
-    return said if budget.closes else f"{said}; {still_open}"
+    if not budget.closes:
+        said += "; undecided" if budget.undecided else "; does not close"
+    return said, left_over(budget)
 
 
 def _engines(records: Sequence[EnginesRecord]) -> Iterator[Block]:

@@ -7,7 +7,7 @@ import pandas as pd
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
-from analytic.problem.arrays import Floats, Words
+from analytic.problem.arrays import Floats, Integers, Words
 from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
 from analytic.space.problem.bodies.support import spread
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
@@ -15,7 +15,6 @@ from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
 _DEPTH = 0.5  # of the scene, at least, over its longest side
 _MARGIN = 0.1  # L, around what moves
 _CORNERS = 500  # of a body that is drawn: what a picture can show of a round one
-_AT_ONCE = 20  # directions; so many numbers a corner fit in memory for a million corners
 _SLIVER = 1e-6  # L; a body that shows less is not drawn
 
 
@@ -24,17 +23,16 @@ class SweepScene:
     """What pictures of a sweep show; lengths in L, y up."""
 
     readings: SpatialReadings  # the sweep
-    # Shape (stations, points, 3); Centrelines from clamp to tip; NaN where there are no readings.
+    # Shape (stations, points, 3); from clamp to tip, NaN where there are no readings.
     lines: Floats
-    foot: Floats  # shape (stations, 3); Contacts as found from the clamp; NaN where there is none
-    # Shape (stations, 3); Contacts as found from the clamp; NaN where there is none.
-    contact: Floats
-    phase: Words  # shape (stations,); As recorded, else as found from the clamp
-    # Shape (triangles, 3, 3); Of the part of the body that is near, seen from outside their corners
-    # run against the clock; none without a body.
+    foot: Floats  # shape (stations, 3)
+    contact: Floats  # shape (stations, 3); as found from the clamp, NaN where there is none
+    phase: Words  # shape (stations,); as recorded, else as found from the clamp
+    # Shape (triangles, 3, 3); of the part of the body that is near, corners against the clock as
+    # seen from outside; none without a body.
     faces: Floats
-    low: Floats  # shape (3,); Corners of the box around all of it
-    high: Floats  # shape (3,); Corners of the box around all of it
+    low: Floats  # shape (3,); corners of the box around all of it
+    high: Floats  # shape (3,)
 
     @classmethod
     def of(cls, readings: SpatialReadings, body: Body | Floats | None) -> "SweepScene":
@@ -43,11 +41,8 @@ class SweepScene:
         found = reconstruct_space(readings)
         phase = table["phase"] if "phase" in table else found["phase"]
         if "contact_arc_length" not in table:
-            arc = {"contact_arc_length": found["contact_arc_length"].to_numpy()}
-            readings = SpatialReadings(
-                table.assign(**arc), readings.beam, readings.tangent, readings.source,
-                readings.provenance,
-            )  # fmt: skip
+            arc = found["contact_arc_length"].to_numpy()
+            readings = replace(readings, table=table.assign(contact_arc_length=arc))
         # What is free but for noise is drawn straight.
         none = readings.trusted & found["torsion"].isna().to_numpy()
         loads = {name: np.where(none, 0.0, readings.values(name)) for name in FORCE}
@@ -67,12 +62,9 @@ class SweepScene:
 
 def _box(points: Floats) -> tuple[Floats, Floats]:
     low, high = points.min(axis=0), points.max(axis=0)
-    widest = _DEPTH * float((high - low).max())  # a straight way has no depth
+    deep = _DEPTH / 2 * np.array([1.0, 0.0, 1.0]) * (high - low).max()  # a straight way has none
     middle = (low + high) / 2
-    for i in (0, 2):
-        low[i] = min(low[i], middle[i] - widest / 2)
-        high[i] = max(high[i], middle[i] + widest / 2)
-    return low - _MARGIN, high + _MARGIN
+    return np.minimum(low, middle - deep) - _MARGIN, np.maximum(high, middle + deep) + _MARGIN
 
 
 def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
@@ -109,16 +101,19 @@ def _outermost(points: Floats) -> Floats:
     points = pd.DataFrame(points).drop_duplicates().to_numpy()
     if len(points) <= _CORNERS:
         return points
-    ways = spread(_CORNERS)
-    chosen = [
-        np.argmax(ways[i : i + _AT_ONCE] @ points.T, axis=1) for i in range(0, _CORNERS, _AT_ONCE)
-    ]
-    return np.asarray(points[np.unique(np.concatenate(chosen))])
+    chosen = [np.argmax(points @ way) for way in spread(_CORNERS)]
+    return np.asarray(points[np.unique(chosen)])
+
+
+def corners_and_faces(faces: Floats) -> tuple[Floats, Integers]:
+    """Each corner of triangles once, and which three of them each triangle has."""
+    corners, where = np.unique(faces.reshape(-1, 3), axis=0, return_inverse=True)
+    return corners, where.reshape(-1, 3)
 
 
 def solid_ply(faces: Floats) -> str:
     """Triangles as PLY, with all their digits."""
-    corners, where = np.unique(faces.reshape(-1, 3), axis=0, return_inverse=True)
+    corners, where = corners_and_faces(faces)
     header = [
         "ply",
         "format ascii 1.0",
@@ -129,5 +124,5 @@ def solid_ply(faces: Floats) -> str:
         "end_header",
     ]
     points = [" ".join(f"{value:.17g}" for value in corner) for corner in corners]
-    triangles = ["3 " + " ".join(map(str, face)) for face in where.reshape(-1, 3).tolist()]
+    triangles = ["3 " + " ".join(map(str, face)) for face in where.tolist()]
     return "\n".join([*header, *points, *triangles, ""])

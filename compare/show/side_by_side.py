@@ -17,8 +17,7 @@ from compare.explain.split import Split, split
 from compare.read.runs import EngineOutcome
 from compare.show import style
 from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
-from compare.show.figures.keys import key_below
-from compare.show.figures.over_foot import foot_label, shade_reference
+from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.html import html
 from compare.show.numbers import short
 from compare.show.page import as_json, png
@@ -49,16 +48,13 @@ class SideBySide:
     ) -> "SideBySide":
         """Compare sweeps by name; those that were asked for may have given none."""
         against = {name: compare(reference, one) for name, one in sweeps.items()}
-        between = {
-            (one, other): compare(sweeps[one], sweeps[other])
-            for one, other in combinations(sweeps, 2)
-        }
+        pairs = combinations(sweeps, 2)
+        between = {(one, other): compare(sweeps[one], sweeps[other]) for one, other in pairs}
         asked = asked or [EngineOutcome(name) for name in sweeps]
-        roles = {one.name: one.role for one in asked}
         outcomes = [
             _compared(one, against[one.name]) if one.name in sweeps else one for one in asked
         ]
-        parts = split(reference, sweeps, roles)
+        parts = split(reference, sweeps, {one.name: one.role for one in asked})
         return cls(case, outcomes, against, between, parts, budget)
 
     @property
@@ -95,21 +91,15 @@ class SideBySide:
 
 
 def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
-    apart = found.snap_off.difference
+    apart, seconds = found.snap_off.difference, found.candidate.provenance.get("seconds")
     return replace(
         one,
         rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
         snap_off_apart=None if apart is None else apart / found.reference.running_unit[0],
-        seconds_a_station=_seconds_a_station(found.candidate),
+        seconds_a_station=None if seconds is None else seconds / len(found.candidate.table),
         agrees=found.agrees,
         likely="; ".join(_causes(found)),
     )
-
-
-def _seconds_a_station(readings: Readings) -> float | None:
-    """Time of a sweep, if its source recorded it."""
-    seconds = readings.provenance.get("seconds")
-    return None if seconds is None else float(seconds) / len(readings.table)
 
 
 def _causes(found: Comparison) -> Iterator[str]:
@@ -125,12 +115,10 @@ def _causes(found: Comparison) -> Iterator[str]:
 def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Path]:
     """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
-    first = next(document.pictures())
-    return [
-        write_whole(folder / f"{called}.html", html(document)),
-        write_whole(folder / f"{called}.json", as_json(found.to_dict())),
-        write_whole(folder / f"{called}.png", png(next(iter(first.figures.values())))),
-    ]
+    (figure,) = next(document.pictures()).figures.values()
+    contents: dict[str, str | bytes] = {"html": html(document), "json": as_json(found.to_dict())}
+    contents["png"] = png(figure)
+    return [write_whole(folder / f"{called}.{kind}", each) for kind, each in contents.items()]
 
 
 def side_by_side_document(found: SideBySide) -> Document:
@@ -170,23 +158,22 @@ def outcomes_table(
     found: Mapping[str, Sequence[EngineOutcome]], reference: str = "the closed form"
 ) -> Table:
     """Each sweep against the reference, by case."""
-    rows = {
-        case: [
-            (
-                one.label,
-                *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
-                short(one.snap_off_apart),
-                "none" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
-                one.trouble
-                or "; ".join(filter(None, ("agrees" if one.agrees else "disagrees", one.likely))),
-            )
-            for one in outcomes
-        ]
-        for case, outcomes in found.items()
-    }
+    rows = {case: [_outcome(one) for one in outcomes] for case, outcomes in found.items()}
     head = ("sweep", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
     caption = f"Each against {reference}, relative rms"
     return _by_case(caption, head, rows, [0, len(head) - 1])
+
+
+def _outcome(one: EngineOutcome) -> tuple[str, ...]:
+    seconds = one.seconds_a_station
+    said = ("agrees" if one.agrees else "disagrees", one.likely)
+    return (
+        one.label,
+        *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
+        short(one.snap_off_apart),
+        "none" if seconds is None else f"{1e3 * seconds:.2g}",
+        one.trouble or "; ".join(filter(None, said)),
+    )
 
 
 def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
@@ -233,9 +220,11 @@ def _sweeps(found: SideBySide) -> Iterator[Block]:
             "Error against time. Processor time of one process; an engine that is not tuned for "
             "this can be faster.",
         )
-    caption = "Differences from the reference over the foot position."
-    shows = "Differences over the foot position"
-    yield Picture("apart", {shows: partial(differences, found)}, caption)
+    yield Picture(
+        "apart",
+        {"Differences over the foot position": partial(differences, found)},
+        "Differences from the reference over the foot position.",
+    )
 
 
 def _split(found: SideBySide) -> Iterator[Block]:
@@ -268,28 +257,27 @@ def error_against_time(found: SideBySide) -> Figure:
         ylabel="rms relative to the largest magnitude",
     )
     ax.set_title(f"{style.label(found.case)}: error against time", fontsize=style.LARGE)
-    named = set()
     for one in found.outcomes:
         if one.rms is None:
             continue
         # One that records no time is a mark at the right edge.
-        timed = one.seconds_a_station is not None
-        x = 1e3 * one.seconds_a_station if one.seconds_a_station is not None else _EDGE
-        across = ax.transData if timed else ax.get_yaxis_transform()
+        x, across, where, more = _EDGE, ax.get_yaxis_transform(), "right", ", no time"
+        if one.seconds_a_station is not None:
+            x, across, where, more = 1e3 * one.seconds_a_station, ax.transData, "center", ""
         for reading, rms in one.rms.items():
-            said = "_" if reading in named else style.SYMBOLS[reading]
             colour, marker = style.READING_COLOURS[reading], style.READING_MARKERS[reading]
-            ax.plot(x, rms, marker, color=colour, label=said, transform=across)
-            named.add(reading)
+            name = style.SYMBOLS[reading]
+            ax.plot(x, rms, marker, color=colour, label=name, transform=across)
         ax.annotate(
-            style.label(one.name) + ("" if timed else ", no time"), (x, max(one.rms.values())),
-            (0, 8), xycoords=across, textcoords="offset points",
-            ha="center" if timed else "right", fontsize=style.SMALL,
+            style.label(one.name) + more, (x, max(one.rms.values())), (0, 8), xycoords=across,
+            textcoords="offset points", ha=where, fontsize=style.SMALL,
         )  # fmt: skip
     ax.margins(0.25)
     ax.grid(which="both", alpha=0.25)
+    handles, names = ax.get_legend_handles_labels()
+    named = dict(zip(names, handles, strict=True))  # each once
     if named:
-        ax.legend(frameon=False, fontsize=style.SMALL)
+        ax.legend(named.values(), named, frameon=False, fontsize=style.SMALL)
     return figure
 
 

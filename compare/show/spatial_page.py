@@ -5,13 +5,7 @@ from functools import partial
 
 from compare.comparison import SpatialComparison
 from compare.explain.split_space import Parts
-from compare.show.comparison_page import (
-    agreement,
-    apart_table,
-    comparison_document,
-    places_table,
-    sizes,
-)
+from compare.show import comparison_page as common
 from compare.show.document import (
     Block,
     Document,
@@ -24,11 +18,7 @@ from compare.show.document import (
     Verdict,
     tiles_line,
 )
-from compare.show.figures.space import (
-    both_in_space,
-    contacts_in_space,
-    sweep_in_space,
-)
+from compare.show.figures import space as drawn
 from compare.show.numbers import percent, short
 from compare.show.scene import SweepScene
 
@@ -42,7 +32,7 @@ def spatial_document(
     """All that there is to say of a comparison in space."""
     body = comparison.reference.provenance.get("body", "Body not recorded")
     touching, stations = comparison.compared.sum(), len(comparison.compared)
-    return comparison_document(
+    return common.document(
         comparison,
         f"{body}; {touching} of {stations} stations compared: those at which both touch. "
         f"Components are in the {comparison.frame}'s frame.",
@@ -59,7 +49,7 @@ def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Itera
     """The verdict and what it rests on, in short."""
     yield spatial_verdict(comparison)
     yield tiles_line(spatial_tiles(comparison))
-    yield from apart_table(comparison)
+    yield from common.apart_table(comparison)
     yield events_table(comparison)
     if parts is not None:
         yield parts_table(parts)
@@ -72,12 +62,14 @@ def spatial_verdict(comparison: SpatialComparison) -> Verdict:
     allowed = short(comparison.tolerances.of(name, "rms"))
     over = f"over {comparison.stations} stations"
     said = f"{name} is off most: {rms} rms {over}, {allowed} is allowed."
-    return agreement(comparison, said if worst is None else f"Most of all {worst.clause}, {over}.")
+    return common.agreement(
+        comparison, said if worst is None else f"Most of all {worst.clause}, {over}."
+    )
 
 
 def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> Iterator[Tile]:
     """The numbers that matter."""
-    yield from sizes(comparison, comparison.largest)
+    yield from common.sizes(comparison, comparison.largest)
     contact = comparison.contact
     if contact.stations:
         where = f"{short(comparison.tolerances.contact)} allowed, at {contact.stations} stations"
@@ -94,7 +86,7 @@ def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> 
 def events_table(comparison: SpatialComparison) -> Table:
     """Where both sweeps touch and leave."""
     caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
-    return places_table(comparison, caption, comparison.events)
+    return common.places_table(comparison, caption, comparison.events)
 
 
 def parts_table(parts: Parts) -> Table:
@@ -115,8 +107,8 @@ def _apart(comparison: SpatialComparison) -> Iterator[Block]:
     lines, dots = comparison.reference.source, comparison.candidate.source
     shows = "Six components of both sweeps over the way of the foot, and their differences"
     caption = f"Lines: {lines}. Dots: {dots}. Below each: candidate less reference."
-    yield Picture("components", {shows: partial(both_in_space, comparison)}, caption)
-    yield from apart_table(comparison)
+    yield Picture("components", {shows: partial(drawn.both_in_space, comparison)}, caption)
+    yield from common.apart_table(comparison)
 
 
 def _sweep(scene: SweepScene, film: Film | None) -> Iterator[Block]:
@@ -126,7 +118,7 @@ def _sweep(scene: SweepScene, film: Film | None) -> Iterator[Block]:
         f"{scene.readings.source}: the body, the vibrissa at some stations coloured by phase, and "
         "the contacts found from its clamp's readings."
     )
-    yield Picture("space", {shows: partial(sweep_in_space, scene)}, caption, "still")
+    yield Picture("space", {shows: partial(drawn.sweep_in_space, scene)}, caption, "still")
     if film is not None:
         yield film
 
@@ -136,19 +128,20 @@ def _events(comparison: SpatialComparison) -> Iterator[Block]:
     shows = "When both sweeps touch, in which phase, and how far their contacts are apart"
     yield Picture(
         "contacts",
-        {shows: partial(contacts_in_space, comparison)},
+        {shows: partial(drawn.contacts_in_space, comparison)},
         "Above: phases of both sweeps; white is without readings. Below: distance between their "
         "contacts; dashed is what its rms may be.",
     )
-    said = []
+    said = ""
     if comparison.phase_agreement is None:
-        said.append("Phases are not compared: a source records none.")
+        said += "Phases are not compared: a source records none. "
     if comparison.contact.from_clamp:
-        sources = " and ".join(comparison.contact.from_clamp)
-        said.append(f"Contacts of {sources} are found from the clamp.")
+        said += (
+            f"Contacts of {' and '.join(comparison.contact.from_clamp)} are found from the clamp. "
+        )
     lacking, having = comparison.candidate.source, comparison.reference.source
-    said.append(f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}.")
-    yield Text(" ".join(said))
+    lost = f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}."
+    yield Text(said + lost)
     statuses = comparison.statuses.items()
     counted = [(f"{which}, {what}", str(n)) for which, of in statuses for what, n in of.items()]
     yield Table("What became of the stations", (), counted)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from compare.show.scene import SweepScene, normals
+from compare.show.scene import SweepScene, corners_and_faces, normals
 from compare.show.style import PHASE_NAMES
 
 _STATIONS = 200  # that a slider has
@@ -18,17 +18,14 @@ def turning(scene: SweepScene) -> dict[str, object]:
     """What ``turning.js`` draws, as JSON holds it."""
     shown = np.unique(np.linspace(0, len(scene.foot) - 1, _STATIONS).round().astype(int))
     touching = [n for n, i in enumerate(shown) if np.isfinite(scene.contact[i]).all()]
-    corners, where = np.unique(scene.faces.reshape(-1, 3), axis=0, return_inverse=True)
+    corners, where = corners_and_faces(scene.faces)
+    lit = _DARKEST + (1 - _DARKEST) * (1 + normals(scene.faces) @ _LIGHT) / 2
+    lights = zip(lit.round(2).tolist(), where.tolist(), strict=True)
     return {
         "low": _rounded(scene.low),
         "high": _rounded(scene.high),
         "corners": _rounded(corners),
-        "faces": [
-            [light, *corner]
-            for light, corner in zip(
-                _lights(scene.faces), where.reshape(-1, 3).tolist(), strict=True
-            )
-        ],
+        "faces": [[light, *face] for light, face in lights],
         "every": max(1, len(shown) // _GHOSTS),
         "first": touching[len(touching) // 2] if touching else 0,
         "colours": _COLOURS,
@@ -47,18 +44,11 @@ def turning(scene: SweepScene) -> dict[str, object]:
 
 def _said(scene: SweepScene, station: int) -> str:
     x, _, z = scene.foot[station]
-    status = "ok"
-    if "status" in scene.readings.table:
-        status = str(scene.readings.table["status"].iloc[station])
+    table = scene.readings.table
+    status = str(table["status"].iloc[station]) if "status" in table else "ok"
     phase = PHASE_NAMES[scene.phase[station]] if status == "ok" else status
     count = len(scene.foot)
     return f"station {station + 1} of {count}, foot at ({x:.3f}, {z:.3f}) L, {phase}"
-
-
-def _lights(faces: Floats) -> list[float]:
-    lit = (1 + normals(faces) @ _LIGHT) / 2
-    found: list[float] = (_DARKEST + (1 - _DARKEST) * lit).round(2).tolist()
-    return found
 
 
 def _rounded(values: Floats) -> list[object] | None:

@@ -21,10 +21,9 @@ def validation_lines(comparison: Comparison) -> list[str]:
 
 def validation_claim(found: Validation) -> str:
     """Whether a disagreement says anything, in a sentence."""
-    sizes = short(found.whole.error), short(found.whole.limit)
-    if found.resolved:
-        return "The disagreement, {} rms, is resolved: only {} is uncertain.".format(*sizes)
-    return "The disagreement, {} rms, is not resolved: {} is uncertain.".format(*sizes)
+    is_it = "is resolved: only" if found.resolved else "is not resolved:"
+    error, limit = short(found.whole.error), short(found.whole.limit)
+    return f"The disagreement, {error} rms, {is_it} {limit} is uncertain."
 
 
 def standard_of(name: str, value: float, beam: Beam) -> str:
@@ -79,13 +78,11 @@ def _dominant(found: Validation, beam: Beam) -> str:
             f"{said}; even without it the rest hides the disagreement. All uncertainties together "
             f"would have to shrink to {found.shrink_all:.2g} of what they are."
         )
-    if name in found.standard:
-        now, then = (
-            standard_of(name, x, beam)
-            for x in (found.standard[name], found.shrink * found.standard[name])
-        )
-        return f"{said}: its standard uncertainty must shrink from {now} to {then} to decide."
-    return f"{said}: it must shrink to {found.shrink:.2g} of what it is to decide."
+    if name not in found.standard:
+        return f"{said}: it must shrink to {found.shrink:.2g} of what it is to decide."
+    now = found.standard[name]
+    sizes = (standard_of(name, x, beam) for x in (now, found.shrink * now))
+    return f"{said}: its standard uncertainty must shrink from {' to '.join(sizes)} to decide."
 
 
 def validation_tables(found: Validation, beam: Beam) -> Iterator[Table | Text]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.show.budgets import left_over
 from compare.show.numbers import short
 
 _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
@@ -39,7 +40,7 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
             said = f"Do not use readings of {candidate} in place of {reference} yet"
         said = f"{said}: {comparison.worst.clause} ({more}over {comparison.stations} stations)"
     if budget is not None:
-        return f"{said}; {_advice(comparison, budget)}{_doubt(comparison, budget)}."
+        said = f"{said}; {_advice(comparison, budget)}{_doubt(comparison, budget)}"
     return f"{said}."
 
 
@@ -51,19 +52,16 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
     if comparison.likely is not None:
         return f"likely: {comparison.likely}"
     unknown = "the readings alone do not show why"
-    if _is_mujoco(comparison):
-        return f"{unknown}; `vibrissa run CASE --budget` measures the parts of a MuJoCo model"
-    if comparison.candidate.source.startswith("model "):
-        return (
-            f"{unknown}; `vibrissa inspect` names the model's faults, --budget measures the parts"
-        )
     rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
-    if comparison.candidate.source.startswith("measured"):
-        return f"{unknown}; {rig}"
-    return (
-        f"{unknown}; of a simulator, refine one thing at a time (elements, time step, contact, "
-        f"obstacle) and see which makes them agree; of a rig, {rig}"
-    )
+    advice = {
+        "mujoco ": "`vibrissa run CASE --budget` measures the parts of a MuJoCo model",
+        "model ": "`vibrissa inspect` names the model's faults, --budget measures the parts",
+        "measured": rig,
+        "": "of a simulator, refine one thing at a time (elements, time step, contact, obstacle) "
+        f"and see which makes them agree; of a rig, {rig}",
+    }
+    source = comparison.candidate.source
+    return f"{unknown}; {next(to for who, to in advice.items() if source.startswith(who))}"
 
 
 def absent_transitions(comparison: Comparison) -> Iterator[str]:
@@ -98,9 +96,8 @@ def _doubt(comparison: Comparison, budget: Budget) -> str:
     """What the budget leaves open, and where it is about fewer stations than the comparison."""
     said = ""
     if budget.undecided or not (budget.closes or budget.blame == "unexplained"):
-        rest = f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
         undecided = "the budget is undecided: " if budget.undecided else ""
-        said = f", but {undecided}{rest} stays unexplained"
+        said = f", but {undecided}{left_over(budget)} stays unexplained"
     compared = comparison.stations
     if budget.stations < _NEARLY_ALL * compared:
         said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"
@@ -112,15 +109,14 @@ def _advice(comparison: Comparison, budget: Budget) -> str:
     name = max(CLAMP_READINGS, key=lambda name: budget.parts[budget.blame][name].rms)
     size = budget.parts[budget.blame][name].rms
     settings = comparison.candidate.provenance.get("settings", {})
-    if budget.blame == "unexplained" and budget.suspects:
-        first = budget.suspects[0]
-        return (
-            f"the numerics do not explain it, but {first.name} does if it is "
-            f"{first.size} off in {comparison.candidate.source}: check it"
-        )
-    if budget.blame == "unexplained" and budget.undecided:
-        return "the numerics are too uncertain to explain it: refine them"
     if budget.blame == "unexplained":
+        for first in budget.suspects[:1]:
+            return (
+                f"the numerics do not explain it, but {first.name} does if it is "
+                f"{first.size} off in {comparison.candidate.source}: check it"
+            )
+        if budget.undecided:
+            return "the numerics are too uncertain to explain it: refine them"
         return "neither the numerics nor a known fault of the physics explains it: look for one"
     if budget.blame == "discretisation" and "segments" in settings:
         n, better = settings["segments"], size / 2**budget.order

@@ -10,7 +10,7 @@ def undrawn(monkeypatch):
     That they are drawn is tested by `test_main`, in `tests/compare/show` and `spatial`, by workers'
     reports in `testing`, and by the pages.
     """
-    monkeypatch.setattr("compare.show.animation.write_animation", lambda *_: [])
+    monkeypatch.setattr("compare.show.animation.plane.write_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.document.Picture.figures", {})
     monkeypatch.setattr("compare.show.report.readings", lambda *_: None)
     monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])

@@ -1,8 +1,1 @@
-"""A sweep in motion: both models' vibrissa, its contact, and the readings of its clamp.
-
-Drawn from readings alone, and without a display.
-"""
-
-from compare.show.animation.plane import write_animation
-
-__all__ = ["write_animation"]
+"""A sweep in motion: both vibrissae, the contact, and the readings; drawn from readings alone."""

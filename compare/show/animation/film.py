@@ -3,7 +3,7 @@
 import io
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -25,38 +25,34 @@ _FRAME, _LAST_FRAME = 80, 1600  # ms
 _TOP = 0.955  # of the heading
 
 
-class Part(Protocol):
+class Part(NamedTuple):
     """A part of the figure that moves."""
 
-    moving: list[Artist]
-    """What is drawn anew at every station."""
-
-    def show(self, station: int) -> None:
-        """Move to a station."""
+    moving: list[Artist]  # what is drawn anew at every station
+    show: Callable[[int], None]  # moves to a station
 
 
-class Heading:
-    """The phase of the station, in a strip with the case and both sources."""
+def heading(
+    reference: Readings | SpatialReadings, candidate: str, phase: Words
+) -> tuple[Figure, Part]:
+    """A figure with a strip on top: the case, both sources, and the phase of the station."""
+    figure = Figure(figsize=_SIZE, dpi=_DPI)
+    case = style.label(reference.provenance.get("case", ""))
+    figure.text(0.085, _TOP, case, fontsize=12, weight="bold")
+    text = figure.text(0.98, _TOP, "", ha="right", fontsize=12, weight="bold")
+    line = Line2D([], [], color=style.REFERENCE, linewidth=3)
+    dots = Line2D([], [], color=style.CANDIDATE, marker="o", linestyle="")
+    figure.legend(
+        [line, dots], [style.label(reference.source), style.label(candidate)],
+        loc="center", bbox_to_anchor=(0.5, 0.967), ncols=2, frameon=False,
+    )  # fmt: skip
 
-    def __init__(self, reference: Readings | SpatialReadings, candidate: str, phase: Words) -> None:
-        self.figure = Figure(figsize=_SIZE, dpi=_DPI)
-        case = style.label(reference.provenance.get("case", ""))
-        self.figure.text(0.085, _TOP, case, fontsize=12, weight="bold")
-        self._text = self.figure.text(0.98, _TOP, "", ha="right", fontsize=12, weight="bold")
-        line = Line2D([], [], color=style.REFERENCE, linewidth=3)
-        dots = Line2D([], [], color=style.CANDIDATE, marker="o", linestyle="")
-        self.figure.legend(
-            [line, dots], [style.label(reference.source), style.label(candidate)],
-            loc="center", bbox_to_anchor=(0.5, 0.967), ncols=2, frameon=False,
-        )  # fmt: skip
-        self._phase = phase
-        self.moving: list[Artist] = [self._text]
+    def show(station: int) -> None:
+        here = str(phase[station])
+        text.set_text(style.PHASE_NAMES.get(here, "without readings to trust"))
+        text.set_color(style.PHASE_COLOURS.get(here, style.INK))
 
-    def show(self, station: int) -> None:
-        """Name the phase of a station."""
-        phase = str(self._phase[station])
-        self._text.set_text(style.PHASE_NAMES.get(phase, "without readings to trust"))
-        self._text.set_color(style.PHASE_COLOURS.get(phase, style.INK))
+    return figure, Part([text], show)
 
 
 def framed(readings: Readings | SpatialReadings, touching: Integers, frames: int) -> Integers:
@@ -70,7 +66,7 @@ def framed(readings: Readings | SpatialReadings, touching: Integers, frames: int
 
 
 def write_film(
-    heading: Heading,
+    figure: Figure,
     parts: Sequence[Part],
     frames: Integers,
     touching: Integers,
@@ -78,15 +74,13 @@ def write_film(
     advance: Callable[[], None],
 ) -> list[Path]:
     """Write the GIF and the stills, each of them whole or not at all."""
-    shown = [int(touching[round(share * (len(touching) - 1))]) for share in _SHARES]
     images = []
-    for image in _images(heading.figure, [heading, *parts], frames, _DPI):
+    for image in _images(figure, parts, frames, _DPI):
         images.append(image)
         advance()
     written = [_save_gif(images, folder / "animation.gif")]
-    for number, image in enumerate(
-        _images(heading.figure, [heading, *parts], shown, _STILL_DPI), start=1
-    ):
+    shown = [touching[round(share * (len(touching) - 1))] for share in _SHARES]
+    for number, image in enumerate(_images(figure, parts, shown, _STILL_DPI), start=1):
         buffer = io.BytesIO()
         image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI))
         written.append(write_whole(folder / f"still-{number}.png", buffer.getvalue()))

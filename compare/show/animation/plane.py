@@ -16,7 +16,7 @@ from matplotlib.patches import Polygon
 from analytic import CLAMP_READINGS, Readings, curvatures, deflected_shapes, reconstruct
 from analytic.problem.arrays import Floats, Words
 from compare.sense.phases import classify
-from compare.show.animation.film import Heading, framed, write_film
+from compare.show.animation.film import Part, framed, heading, write_film
 from compare.show.figures.over_foot import foot, shade_phases, unit
 from compare.show.style import ALONG, BODY, CANDIDATE, FAINT, GREY, INK, REFERENCE, axis_label
 
@@ -41,18 +41,17 @@ def write_animation(
     one, other = _Motion.of(reference), _Motion.of(candidate)
     touching = np.flatnonzero(np.isin(one.phase, ("tip", "tangent")))
     chosen = framed(reference, touching, frames)
-    heading = Heading(reference, candidate.source, one.phase)
-    grid = heading.figure.add_gridspec(
+    figure, strip = heading(reference, candidate.source, one.phase)
+    grid = figure.add_gridspec(
         2, 2, left=0.085, right=0.985, top=0.915, bottom=0.085, hspace=0.24, wspace=0.3,
         height_ratios=[1, 2.1], width_ratios=[1.3, 1],
     )  # fmt: skip
-    far = _View(heading.figure.add_subplot(grid[0, :]), one, other, follows=False)
-    near = _View(heading.figure.add_subplot(grid[1, 0]), one, other, follows=True)
-    near.add_keys()
+    far = _view(figure.add_subplot(grid[0, :]), one, other, follows=False)
+    near = _view(figure.add_subplot(grid[1, 0]), one, other, follows=True)
     plots: Any = grid[1, 1].subgridspec(3, 1, hspace=0.12).subplots(sharex=True)
-    curves = [_Curve(ax, one, other, name) for ax, name in zip(plots, CLAMP_READINGS, strict=True)]
+    curves = [_curve(ax, one, other, name) for ax, name in zip(plots, CLAMP_READINGS, strict=True)]
     plots[-1].set_xlabel(ALONG[reference.running].axis)
-    return write_film(heading, [far, near, *curves], chosen, touching, folder, advance)
+    return write_film(figure, [strip, far, near, *curves], chosen, touching, folder, advance)
 
 
 @dataclass(frozen=True)
@@ -67,11 +66,6 @@ class _Motion:
     contact: Floats  # shape (stations, 2); where the body is touched; NaN where it is not
     clamp: dict[str, Floats]  # shape (stations,); the clamp readings
     phase: Words  # shape (stations,); as judged from the clamp
-
-    @property
-    def force(self) -> float:
-        """The largest contact force."""
-        return float(np.nanmax(np.hypot(self.clamp["force_x"], self.clamp["force_y"])))
 
     @classmethod
     def of(cls, readings: Readings) -> "_Motion":
@@ -101,107 +95,94 @@ class _Motion:
         return np.interp(at, along, x), np.interp(at, along, y)
 
 
-class _View:
+def _view(ax: Axes, one: _Motion, other: _Motion, follows: bool) -> Part:
     """The object, both vibrissae, the contact and its force, in one pair of axes."""
-
-    def __init__(self, ax: Axes, one: _Motion, other: _Motion, follows: bool) -> None:
-        self._ax, self._one, self._other, self._follows = ax, one, other, follows
-        width, dot = (7.0, 4.5) if follows else (2.0, 0.0)
-        self._outline = _outline(one.readings)
-        self._body = Polygon(self._outline, facecolor=BODY, edgecolor=GREY, zorder=1)
-        ax.add_patch(self._body)
-        self._line = LineCollection(
-            [], cmap=_CURVATURE_COLOURS, norm=PowerNorm(0.5, 0, float(np.nanmax(one.curvature))),
-            linewidth=width, capstyle="round", zorder=3,
-        )  # fmt: skip
-        ax.add_collection(self._line)
-        # Its rim has the reference's colour, as its curves have.
-        (self._rim,) = ax.plot(
-            [], [], color=REFERENCE, linewidth=width + _RIM, solid_capstyle="round", zorder=2.9
-        )
-        (self._dots,) = ax.plot(
-            [], [], "o", color=CANDIDATE, markersize=dot, markeredgecolor="w", zorder=4
-        )
-        (self._clamp,) = ax.plot([], [], color=INK, linewidth=0.8 * width, zorder=5)
-        (self._contact,) = ax.plot([], [], "o", color=INK, markersize=0.5 * width + 1, zorder=6)
-        # It ends at the contact of a low object, in whose inside there is room.
-        low = np.nanmedian(one.contact[:, 1]) < 0.5
-        self._force = ax.quiver(
-            [0.0], [0.0], [0.0], [0.0], color=INK, angles="xy", scale_units="xy",
-            pivot="tip" if low else "tail", scale=one.force / _LONGEST_ARROW, zorder=6,
-            units="dots", width=2.4 if follows else 1.4, minlength=0,
-        )  # fmt: skip
-        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
-        ax.set_xlabel("$(x - x_0)$ / $L$" if follows else "$x$ / $L$", labelpad=1)
-        ax.set_ylabel("$y$ / $L$")
-        seen = [m.x - m.x[:, :1] * follows for m in (one, other)]
-        ax.set_xlim(*_padded([*seen, [] if follows else self._outline[:, 0]], 0.05), auto=True)
-        lowest = min(_LOWEST, float(np.nanmin(one.y)) + _LOWEST)
-        ax.set_ylim(lowest, _HIGHEST, auto=True)
-        ax.set_aspect("equal", adjustable="datalim")
-        self.moving: list[Artist] = [
-            *([self._body] if follows else []),
-            self._rim, self._line, self._dots, self._clamp, self._contact, self._force,
-        ]  # fmt: skip
-
-    def add_keys(self) -> None:
-        """The curvature's colours, and an arrow of a round force."""
-        bar = self._ax.figure.colorbar(self._line, ax=self._ax, aspect=32, pad=0.03)
+    width, dot = (7.0, 4.5) if follows else (2.0, 0.0)
+    outline = _outline(one.readings)
+    body = Polygon(outline, facecolor=BODY, edgecolor=GREY, zorder=1)
+    ax.add_patch(body)
+    line = LineCollection(
+        [], cmap=_CURVATURE_COLOURS, norm=PowerNorm(0.5, 0, float(np.nanmax(one.curvature))),
+        linewidth=width, capstyle="round", zorder=3,
+    )  # fmt: skip
+    ax.add_collection(line)
+    # Its rim has the reference's colour, as its curves have.
+    (rim,) = ax.plot(
+        [], [], color=REFERENCE, linewidth=width + _RIM, solid_capstyle="round", zorder=2.9
+    )
+    (dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=dot, markeredgecolor="w", zorder=4)
+    (clamp,) = ax.plot([], [], color=INK, linewidth=0.8 * width, zorder=5)
+    (touched,) = ax.plot([], [], "o", color=INK, markersize=0.5 * width + 1, zorder=6)
+    # It ends at the contact of a low object, in whose inside there is room.
+    low = np.nanmedian(one.contact[:, 1]) < 0.5
+    largest = float(np.nanmax(np.hypot(one.clamp["force_x"], one.clamp["force_y"])))
+    force = ax.quiver(
+        [0.0], [0.0], [0.0], [0.0], color=INK, angles="xy", scale_units="xy",
+        pivot="tip" if low else "tail", scale=largest / _LONGEST_ARROW, zorder=6,
+        units="dots", width=2.4 if follows else 1.4, minlength=0,
+    )  # fmt: skip
+    ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+    ax.set_xlabel("$(x - x_0)$ / $L$" if follows else "$x$ / $L$", labelpad=1)
+    ax.set_ylabel("$y$ / $L$")
+    seen = [m.x - m.x[:, :1] * follows for m in (one, other)]
+    ax.set_xlim(*_padded([*seen, [] if follows else outline[:, 0]], 0.05), auto=True)
+    ax.set_ylim(min(_LOWEST, float(np.nanmin(one.y)) + _LOWEST), _HIGHEST, auto=True)
+    ax.set_aspect("equal", adjustable="datalim")
+    if follows:  # the curvature's colours, and an arrow of a round force
+        bar = ax.figure.colorbar(line, ax=ax, aspect=32, pad=0.03)
         bar.set_label(r"curvature $|\kappa|$ / ($1/L$)")
-        size = float(f"{self._one.force / 4:.1g}")
-        self._ax.quiverkey(
-            self._force, 0.36, 0.055, size, f"contact force {size:g} $EI/L^2$",
+        size = float(f"{largest / 4:.1g}")
+        ax.quiverkey(
+            force, 0.36, 0.055, size, f"contact force {size:g} $EI/L^2$",
             labelpos="E", coordinates="axes", fontproperties={"size": 9},
         )  # fmt: skip
 
-    def show(self, station: int) -> None:
-        """Move to a station."""
-        one, other = self._one, self._other
-        origin = one.x[station, 0] if self._follows else 0.0
+    def show(station: int) -> None:
+        origin = one.x[station, 0] if follows else 0.0
         x, y = one.x[station] - origin, one.y[station]
         ends = np.column_stack([x, y])
-        self._line.set_segments(list(np.stack([ends[:-1], ends[1:]], axis=1)))
-        self._rim.set_data(x, y)
+        line.set_segments(list(np.stack([ends[:-1], ends[1:]], axis=1)))
+        rim.set_data(x, y)
         bent = one.curvature[station]
-        self._line.set_array((bent[1:] + bent[:-1]) / 2)
+        line.set_array((bent[1:] + bent[:-1]) / 2)
         # Even where the stations of the two differ, each vibrissa stands on its own foot.
         beads_x, beads_y = other.beads(other.beside(one.along[station]))
-        self._dots.set_data(beads_x - origin, beads_y)
+        dots.set_data(beads_x - origin, beads_y)
         across = np.array([-0.06, 0.06])
         leans = one.readings.clamp_angle[station]
-        self._clamp.set_data(x[0] + across * np.cos(leans), y[0] + across * np.sin(leans))
+        clamp.set_data(x[0] + across * np.cos(leans), y[0] + across * np.sin(leans))
         contact = one.contact[station] - (origin, 0.0)
-        self._contact.set_data(contact[:1], contact[1:])
-        self._force.set_offsets(np.nan_to_num(contact))
+        touched.set_data(contact[:1], contact[1:])
+        force.set_offsets(np.nan_to_num(contact))
         force_x, force_y = (one.clamp[name][station] for name in ("force_x", "force_y"))
-        self._force.set_UVC([-force_x], [-force_y])
-        if self._follows:
-            self._body.set_xy(self._outline - (origin, 0.0))
+        force.set_UVC([-force_x], [-force_y])
+        if follows:
+            body.set_xy(outline - (origin, 0.0))
+
+    moving: list[Artist] = [rim, line, dots, clamp, touched, force]
+    return Part([body, *moving] if follows else moving, show)
 
 
-class _Curve:
+def _curve(ax: Axes, one: _Motion, other: _Motion, name: str) -> Part:
     """One clamp reading over the foot position, as far as the sweep has come."""
+    x, values = one.along, one.clamp[name]
+    (line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
+    every = max(1, len(other.along) // _MARKS)
+    (dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
+    (head,) = ax.plot([], [], "o", color=INK, markersize=5)
+    ax.set_xlim(*_padded([x, other.along], 0.03))
+    ax.set_ylim(*_padded([values, other.clamp[name]], 0.08))
+    ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+    ax.set_ylabel(axis_label(name))
+    shade_phases(ax, x, one.phase)
 
-    def __init__(self, ax: Axes, one: _Motion, other: _Motion, name: str) -> None:
-        self._one, self._other, self._name = one, other, name
-        (self._line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
-        every = max(1, len(other.along) // _MARKS)
-        (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
-        (self._head,) = ax.plot([], [], "o", color=INK, markersize=5)
-        ax.set_xlim(*_padded([one.along, other.along], 0.03))
-        ax.set_ylim(*_padded([one.clamp[name], other.clamp[name]], 0.08))
-        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
-        ax.set_ylabel(axis_label(name))
-        shade_phases(ax, one.along, one.phase)
-        self.moving: list[Artist] = [self._line, self._dots, self._head]
+    def show(station: int) -> None:
+        until = other.beside(x[station]) + 1
+        line.set_data(x[: station + 1], values[: station + 1])
+        dots.set_data(other.along[:until], other.clamp[name][:until])
+        head.set_data(x[station : station + 1], values[station : station + 1])
 
-    def show(self, station: int) -> None:
-        """Grow up to a station."""
-        x, values = self._one.along, self._one.clamp[self._name]
-        until = self._other.beside(x[station]) + 1
-        self._line.set_data(x[: station + 1], values[: station + 1])
-        self._dots.set_data(self._other.along[:until], self._other.clamp[self._name][:until])
-        self._head.set_data(x[station : station + 1], values[station : station + 1])
+    return Part([line, dots, head], show)
 
 
 def _outline(readings: Readings) -> Floats:

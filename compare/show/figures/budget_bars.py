@@ -11,20 +11,9 @@ from matplotlib.ticker import NullFormatter, NullLocator
 from analytic import CLAMP_READINGS
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
+from compare.show import style
 from compare.show.budgets import headline
 from compare.show.numbers import short
-from compare.show.style import (
-    BLUE,
-    BODY,
-    FAINT,
-    GREY,
-    INK,
-    LARGE,
-    ORANGE,
-    READING_COLOURS,
-    READING_MARKERS,
-    SMALL,
-)
 
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
 _PANEL = (4.3, 3.1)  # inches
@@ -33,20 +22,15 @@ _PANEL = (4.3, 3.1)  # inches
 def picture(found: Budget) -> Figure:
     """Draw all readings side by side, under a sentence that says what they show."""
     width, height = _PANEL
-    figure = Figure(
-        figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
-    )
+    figure = Figure((width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained")
     axes = figure.subplots(1, len(CLAMP_READINGS))
     for ax, reading in zip(axes, CLAMP_READINGS, strict=True):
         _draw(ax, found, reading)
     for ax in axes:
         ax.tick_params(labelleft=ax is axes[0])
         ax.set_xlabel("")
-    figure.supxlabel(
-        "rms / largest magnitude, with its uncertainty; "
-        "dashed: all of it; grey: may stay unexplained",
-        fontsize=SMALL,
-    )
+    said = "with its uncertainty; dashed: all of it; grey: may stay unexplained"
+    figure.supxlabel(f"rms / largest magnitude, {said}", fontsize=style.SMALL)
     figure.suptitle(headline(found), fontsize=12)
     return figure
 
@@ -70,17 +54,17 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     ax.xaxis.set_major_formatter(lambda x, _: f"1e{round(math.log10(x))}")
     ax.minorticks_off()
     ax.set_xlim(_LEAST, 1.5 * largest)
-    ax.axvspan(_LEAST, UNRESOLVED, color=BODY, alpha=0.6, linewidth=0, zorder=0)
-    colours = {found.blame: ORANGE, "unexplained": INK}
+    ax.axvspan(_LEAST, UNRESOLVED, color=style.BODY, alpha=0.6, linewidth=0, zorder=0)
+    colours = {found.blame: style.ORANGE, "unexplained": style.INK}
     for name, row, part in zip(names, rows, parts, strict=True):
-        _bar(ax, row, part.rms, part.uncertainty, colours.get(name, BLUE))
-    ax.axvline(total, color=GREY, linestyle="--", linewidth=1.3, zorder=3)
-    ax.axhline(0.65, color=GREY, linewidth=0.6)
+        _bar(ax, row, part.rms, part.uncertainty, colours.get(name, style.BLUE))
+    ax.axvline(total, color=style.GREY, linestyle="--", linewidth=1.3, zorder=3)
+    ax.axhline(0.65, color=style.GREY, linewidth=0.6)
     ax.set_ylim(-0.6, rows[0] + 0.6)
     ax.set_yticks(rows, names)
     ax.tick_params(axis="y", length=0)
     ax.yaxis.get_ticklabels()[names.index(found.blame)].set_fontweight("bold")
-    ax.set_title(f"{reading}: {short(total)} in all", fontsize=LARGE)
+    ax.set_title(f"{reading}: {short(total)} in all", fontsize=style.LARGE)
     ax.set_xlabel("rms / largest magnitude")
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
@@ -92,10 +76,10 @@ def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> N
     if rms > _LEAST:
         ax.barh(row, rms - _LEAST, left=_LEAST, height=0.62, color=colour)
     if high > _LEAST:
-        ax.plot([low, high], [row, row], color=GREY, linewidth=1.2, marker="|", markersize=6)
+        ax.plot([low, high], [row, row], color=style.GREY, linewidth=1.2, marker="|", markersize=6)
     ax.annotate(
         short(rms), (1, row), (34, 0), xycoords=("axes fraction", "data"),
-        textcoords="offset points", va="center", ha="right", fontsize=SMALL,
+        textcoords="offset points", va="center", ha="right", fontsize=style.SMALL,
     )  # fmt: skip
 
 
@@ -116,7 +100,7 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
     n = np.array(list(found), dtype=float)
     for name, order in fitted_orders(found).items():
         errors = np.array([found[segments][name] for segments in found])
-        colour, marker = READING_COLOURS[name], READING_MARKERS[name]
+        colour, marker = style.READING_COLOURS[name], style.READING_MARKERS[name]
         fit = np.exp(np.log(errors).mean()) * (n / np.exp(np.log(n).mean())) ** -order
         ax.plot(n, fit, color=colour, linewidth=1.2)
         ax.plot(n, errors, marker, color=colour, markersize=6, label=f"{name}: order {order:.2f}")
@@ -126,11 +110,11 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
     ax.set_xticks(n, [f"{segments:g}" for segments in n])
     ax.xaxis.set_minor_locator(NullLocator())
     ax.yaxis.set_minor_formatter(NullFormatter())
-    ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
+    ax.grid(axis="y", color=style.FAINT, alpha=0.35, linewidth=0.6)
     ax.set_xlabel("segments $N$")
     ax.set_ylabel("rms / largest magnitude")
     lowest = min(errors[name] for errors in found.values() for name in errors)
     second = 0.7 * lowest * (n.max() / n) ** _SECOND
-    ax.plot(n, second, color=GREY, linestyle="--", linewidth=1, label="second order")
-    ax.legend(fontsize=SMALL, frameon=False, loc="upper right")
+    ax.plot(n, second, color=style.GREY, linestyle="--", linewidth=1, label="second order")
+    ax.legend(fontsize=style.SMALL, frameon=False, loc="upper right")
     return figure

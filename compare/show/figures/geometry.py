@@ -16,8 +16,7 @@ from analytic import FittedObject, Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
-from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import draw, on_vibrissa
+from compare.show.figures.over_foot import draw, key_below, on_vibrissa, phase_handles
 from compare.show.numbers import quantity
 
 _SHAPES = 24  # drawn of each sweep
@@ -36,11 +35,8 @@ def geometry(comparison: Comparison) -> Figure:
         phase = comparison.judged[which].phase
         _draw_shapes(ax, readings, phase)
         _draw_object(ax, readings, phase)
-        ax.set_title(
-            f"{which}: {style.label(readings.source)}",
-            loc="left",
-            fontsize=style.NORMAL,
-        )
+        title = f"{which}: {style.label(readings.source)}"
+        ax.set_title(title, loc="left", fontsize=style.NORMAL)
         ax.set_ylabel("$y$ / $L$")
         ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     beam = comparison.reference.beam
@@ -86,13 +82,10 @@ def reconstruction(
     if "uncertainty" in found:
         radius = found["uncertainty"].to_numpy() / scale
         known = np.flatnonzero(there & np.isfinite(radius))
-        circles = PatchCollection(
-            [Circle((x[i], y[i]), radius[i]) for i in known[:: len(known) // _CIRCLES + 1]],
-            color=style.GREEN,
-            alpha=0.08,
-            linewidth=0,
-        )
-        ax.add_collection(circles)
+        shown = known[:: len(known) // _CIRCLES + 1]
+        circles = [Circle((x[i], y[i]), radius[i]) for i in shown]
+        green = PatchCollection(circles, color=style.GREEN, alpha=0.08, linewidth=0)
+        ax.add_collection(green)
         ax.plot([], [], "o", color=style.GREEN, alpha=0.3, markersize=9, label="95 % of cases")
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
     if fitted is not None:
@@ -130,17 +123,12 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
     chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
     if not chosen.size:
         return
-    scale = readings.beam.length
     # A sweep has two stations at least.
-    rows = readings.table.iloc[np.append(chosen, chosen[-1])]
-    picked = replace(readings, table=rows)
-    x, y = (path[:-1] / scale for path in deflected_shapes(picked))
-    lines = LineCollection(
-        list(np.stack([x, y], axis=-1)),
-        colors=[style.PHASE_COLOURS[str(phase[i])] for i in chosen],
-        linewidths=1.1,
-    )
-    ax.add_collection(lines)
+    picked = replace(readings, table=readings.table.iloc[np.append(chosen, chosen[-1])])
+    x, y = (path[:-1] / readings.beam.length for path in deflected_shapes(picked))
+    colours = [style.PHASE_COLOURS[str(phase[i])] for i in chosen]
+    lines = list(np.stack([x, y], axis=-1))
+    ax.add_collection(LineCollection(lines, colors=colours, linewidths=1.1))
     ax.plot(x[:, 0], y[:, 0], "s", color=style.GREY, markersize=2.5)
     ax.autoscale_view()
 
@@ -151,8 +139,6 @@ def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
         ax.fill_between(xi, eta, eta.max(), color=style.BODY, linewidth=0, zorder=0)
         ax.plot(xi, eta, **_OBJECT, zorder=1)
     found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
-    s, x, y = (
-        found[name].to_numpy() / scale for name in ("contact_arc_length", "contact_x", "contact_y")
-    )
+    s, x, y = found[["contact_arc_length", "contact_x", "contact_y"]].to_numpy().T / scale
     there = np.isfinite(on_vibrissa(s))
     draw(ax, x[there], y[there], **_CONTACT)

@@ -1,11 +1,13 @@
 """What pictures over the foot position share: units of the beam, phases, marks, keys, folds."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
@@ -13,7 +15,6 @@ from analytic.space import SpatialReadings
 from compare.comparison import Comparison
 from compare.sense.phases import Classification
 from compare.show import style
-from compare.show.figures.keys import phase_handles
 from compare.show.numbers import Kind, quantity
 
 LINE: dict[str, Any] = {"color": style.REFERENCE, "linewidth": 3.0}
@@ -113,6 +114,25 @@ def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
 def shade_reference(ax: Axes, comparison: Comparison) -> None:
     """Draw the contact phases of a comparison's reference as a background."""
     shade_phases(ax, foot(comparison.reference), comparison.judged["reference"].phase)
+
+
+def key_below(figure: Figure, meant: Axes | Sequence[Artist], columns: int) -> None:
+    """Say below all axes what is meant by these artists, or by those of one axes.
+
+    A figure that lays itself out makes room for it.
+    """
+    handles = meant.get_legend_handles_labels()[0] if isinstance(meant, Axes) else meant
+    outside = "outside " if figure.get_layout_engine() else ""
+    place: Any = f"{outside}lower center"
+    figure.legend(handles=handles, loc=place, ncols=columns, fontsize=style.SMALL, frameon=False)
+
+
+def phase_handles(*phases: str, **look: Any) -> list[Artist]:  # noqa: ANN401  # matplotlib's
+    """A line in the colour of each phase, by default of all."""
+    return [
+        Line2D([], [], color=style.PHASE_COLOURS[phase], label=style.PHASE_NAMES[phase], **look)
+        for phase in phases or style.PHASE_COLOURS
+    ]
 
 
 def key(ax: Axes) -> list[Artist]:

@@ -15,7 +15,6 @@ from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
 from compare.read.passes import Pass
 from compare.show import style
-from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
@@ -23,6 +22,7 @@ from compare.show.figures.over_foot import (
     foot,
     foot_label,
     key,
+    key_below,
     on_vibrissa,
     reading_label,
     scaled,
@@ -140,13 +140,10 @@ def phase_criterion(comparison: Comparison) -> Figure:
     )
     size, _ = comparison.reference.running_unit
     for place in comparison.transitions.values():
-        for where, colour in (
-            (place.reference, style.REFERENCE),
-            (place.candidate, style.CANDIDATE),
-        ):
-            if where is not None:
-                for ax in axes:
-                    ax.axvline(where / size, color=colour, linestyle=":", linewidth=1)
+        for side, colour in _COLOURS.items():
+            where = getattr(place, side)
+            for ax in () if where is None else axes:
+                ax.axvline(where / size, color=colour, linestyle=":", linewidth=1)
     key_below(figure, axes[0], 2)
     return figure
 

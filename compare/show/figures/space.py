@@ -1,5 +1,7 @@
 """A sweep in space: body, vibrissa and contacts as they stand, and the readings along the way."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,8 +15,7 @@ from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison import SpatialComparison
 from compare.show import style
-from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import in_unit, unit
+from compare.show.figures.over_foot import in_unit, key_below, phase_handles, unit
 from compare.show.scene import SweepScene, normals
 
 _SHAPES = 24  # drawn of a sweep
@@ -24,8 +25,7 @@ _VIEW = {"elev": 12.0, "azim": -62.0}
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 """Of the components in x, y and z."""
 _LEAST = 1e-12  # L; contacts that are closer are drawn at this
-
-
+_EVENT: dict[str, Any] = {"color": style.INK, "marker": "|", "linestyle": ""}
 LOADS = {"$F$ / ($EI/L^2$)": FORCE, "$M$ / ($EI/L$)": MOMENT}
 """Force and moment by the labels of their axes."""
 
@@ -79,12 +79,8 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
         below.set_xlabel("way of the foot / $L$")
         below.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
         below.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
-    figure.suptitle(
-        style.label(f"lines: {one.source}; dots: {other.source}"),
-        x=0.01,
-        ha="left",
-        fontsize=style.NORMAL,
-    )
+    title = style.label(f"lines: {one.source}; dots: {other.source}")
+    figure.suptitle(title, x=0.01, ha="left", fontsize=style.NORMAL)
     return figure
 
 
@@ -104,17 +100,13 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
         for name, colour in {**style.PHASE_COLOURS, "touching": style.GREEN}.items():
             spans = [(edges[i], edges[i + 1] - edges[i]) for i in np.flatnonzero(phase == name)]
             strips.broken_barh(spans, (0.6 - row, 0.8), facecolors=colour, linewidth=0)
-        events = [pair.reference if row == 0 else pair.candidate
-                  for pair in comparison.events.values()]  # fmt: skip
+        which = ("reference", "candidate")[row]
+        events = [getattr(pair, which) for pair in comparison.events.values()]
         at = [event / length for event in events if event is not None]
-        strips.plot(
-            at, [1 - row] * len(at), color=style.INK, marker="|", markersize=18, linestyle=""
-        )
+        strips.plot(at, [1 - row] * len(at), **_EVENT, markersize=18)
     strips.set_yticks([1, 0], [style.label(readings.source) for readings in sides])
     strips.set_ylim(-0.6, 1.6)
-    leaves = Line2D(
-        [], [], color=style.INK, marker="|", markersize=9, ls="", label="touches or leaves"
-    )
+    leaves = Line2D([], [], **_EVENT, markersize=9, label="touches or leaves")
     strips.legend(
         handles=[*phase_handles(linewidth=5), leaves], fontsize=style.SMALL, frameon=False, ncols=4,
         loc="lower left", bbox_to_anchor=(0, 1),
@@ -131,15 +123,10 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
     """Draw what does not move: the body and the way of the foot, with axes of equal scale."""
     faces = scene.faces
     if len(faces):
-        grey = (1 - _DARK) + _DARK * np.abs(normals(faces) @ _LIGHT)
-        colours = np.column_stack(
-            [np.repeat(0.87 * grey[:, None], 3, axis=1), np.full(len(grey), 0.6)]
-        )
-        ax.add_collection3d(
-            Poly3DCollection(
-                upright(faces), facecolors=colours, edgecolors=style.BODY, linewidths=0.2
-            )
-        )
+        grey = 0.87 * ((1 - _DARK) + _DARK * np.abs(normals(faces) @ _LIGHT))
+        colours = np.column_stack([grey, grey, grey, np.full(len(grey), 0.6)])
+        shown = {"facecolors": colours, "edgecolors": style.BODY, "linewidths": 0.2}
+        ax.add_collection3d(Poly3DCollection(upright(faces), **shown))
     ax.plot(*upright(scene.foot).T, color=style.GREY, linestyle="--", linewidth=1)
     low, high = scene.low, scene.high
     ax.set(

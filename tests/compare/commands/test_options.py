@@ -228,9 +228,8 @@ def filmed(undrawn, monkeypatch):
         place, frames = given[2], given[-2]
         (place / "animation.gif").write_text(str(frames))
 
-    for module in ("animation", "animation.space"):
-        name = f"write_{'space_' if 'space' in module else ''}animation"
-        monkeypatch.setattr(f"compare.show.{module}.{name}", drawn)
+    for module, name in (("plane", "write_animation"), ("space", "write_space_animation")):
+        monkeypatch.setattr(f"compare.show.animation.{module}.{name}", drawn)
 
 
 @pytest.mark.slow

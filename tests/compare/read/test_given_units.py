@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import SENSED, Beam, Case, InputError, Readings, circle, named_case, solve_sweep
+from analytic import CASE_NAMES, SENSED, Beam, Case, InputError, Readings, circle, solve_sweep
 from compare import read_measured
 from compare.read.assumed import ASSUMED
 from compare.read.units import OWN_UNITS, in_si, is_unit, unit_in_si
+from tests.conftest import exact_sweep
 
 BEAM = Beam(0.05, 2e-6, 0.25e-3)  # m, N m^2, m
 FILE_UNITS = (1e-3, 1e-3, 1e-3, 1e-6)  # mm, mN, mN, mN mm
@@ -24,13 +25,20 @@ def rig(exact) -> pd.DataFrame:
     return exact.table[list(SENSED)] / np.array(FILE_UNITS)
 
 
+COLUMNS = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
+
+
 def test_units_without_a_vibrissa(rig):
-    columns = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
-    with pytest.raises(InputError, match=r"vibrissa = none given: .* --beam FILE"):
-        read_measured(rig, columns=columns)
-    with pytest.raises(InputError, match="vibrissa = none given"):
-        read_measured(rig, columns=columns[:1])
-    assert read_measured(rig, BEAM, columns).beam == BEAM
+    for columns in (COLUMNS, COLUMNS[:1]):
+        with pytest.raises(InputError, match=r"vibrissa = none given: .* --beam FILE"):
+            read_measured(rig, columns=columns)
+    assert read_measured(rig, BEAM, COLUMNS).beam == BEAM
+
+
+def noisy(sweep: Readings, noise: float) -> pd.DataFrame:
+    table = sweep.table[list(SENSED)].copy()
+    scatter = np.random.default_rng(0).standard_normal(table.shape)
+    return table + noise * scatter * [0, *table.abs().max()[1:]]
 
 
 @pytest.mark.parametrize("length", [1e3, 1e2, 1.0])
@@ -38,40 +46,35 @@ def test_units_without_a_vibrissa(rig):
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_readings_of_no_vibrissa_of_length_and_rigidity_one(exact, length, force, noise):
     """A rig of 50 mm in mm, cm or m and mN or N, whose numbers are of no such vibrissa."""
-    table = exact.table[list(SENSED)] * [length, force, force, force * length]
-    scatter = np.random.default_rng(0).standard_normal(table.shape)
-    table += noise * scatter * [0, *table.abs().max()[1:]]
     with pytest.raises(InputError, match="vibrissa = none given"):
-        read_measured(table)
+        read_measured(noisy(exact, noise) * [length, force, force, force * length])
 
 
-@pytest.mark.parametrize(
-    "case", ["catenary", "parabola", "two-circles", "shallow-catenary", "tip-only"]
-)
+@pytest.mark.parametrize("case", CASE_NAMES)
 @pytest.mark.parametrize("noise", [0.0, 0.01, 0.05])
 def test_dimensionless_readings_go_on_working(case, noise):
-    sweep = solve_sweep(named_case(case))
-    table = sweep.table[list(SENSED)].copy()
-    scatter = np.random.default_rng(1).standard_normal(table.shape)
-    table += noise * scatter * [0, *table.abs().max()[1:]]
-    found = read_measured(table)
-    assert found.beam == Beam()
-    assert found.provenance[ASSUMED] == "L = EI = 1"
+    """Also with a spike and gaps, which are no wrong vibrissa."""
+    table = noisy(exact_sweep(case), noise)
+    for _ in range(2):
+        found = read_measured(table)
+        assert found.beam == Beam()
+        assert found.provenance[ASSUMED] == "L = EI = 1"
+        table.loc[100, ["force_x", "force_y"]] = 1e6
+        table.loc[50:55, "moment_z"] = np.nan
 
 
 def test_a_vibrissa_in_plain_numbers_beside_units(tmp_path, rig):
-    columns = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
     path = tmp_path / "beam.toml"
     path.write_text(CASE.format(50, 2, 0.25))
     with pytest.raises(InputError, match="without units"):
-        read_measured(rig, path, columns)
+        read_measured(rig, path, COLUMNS)
     path.write_text(CASE.format('"50 mm"', '"2e-6 N m^2"', '"0.25 mm"'))
-    found = read_measured(rig, path, columns)
+    found = read_measured(rig, path, COLUMNS)
     assert found.beam.si
     assert found.provenance["units"]["moment_z"] == "mN mm"
     path.write_text(CASE.format('"50 mm"', "2", '"0.25 mm"'))
     with pytest.raises(InputError, match="flexural_rigidity = without a unit"):
-        read_measured(rig, path, columns)
+        read_measured(rig, path, COLUMNS)
 
 
 @pytest.mark.parametrize("separator", [";", "\t", ",", "   "])
@@ -97,6 +100,8 @@ def test_a_line_of_units_below_the_names(tmp_path, exact, rig, separator, bracke
     assert named.values("moment_z") == pytest.approx(1e6 * found.values("moment_z"))
     path.write_text(path.read_text().replace(separator.join(names), separator.join(SENSED)))
     assert read_measured(path, BEAM).values("foot_x") == pytest.approx(found.values("foot_x"))
+    in_m = read_measured(path, BEAM, ["foot_x=foot_x:m"])
+    assert in_m.values("foot_x") == pytest.approx(1e3 * found.values("foot_x"))
 
 
 def test_names_that_are_units_by_chance_are_names(tmp_path, rig):
@@ -111,18 +116,9 @@ def test_columns_that_nobody_named(tmp_path, rig):
     path = tmp_path / "rig.csv"
     names = ["Zeit [s]", "Kraft (mN)", "Weg [mm]", "Mz [N mm]"]
     rig.set_axis(names, axis=1).to_csv(path, index=False)
-    with pytest.raises(InputError, match=r"--column foot_x=COLUMN:m"):
-        read_measured(path)
-    with pytest.raises(InputError, match=r"--column force_x=COLUMN:N"):
-        read_measured(path, columns=["foot_x=Weg [mm]"])
-
-
-def test_a_spike_is_no_wrong_vibrissa():
-    sweep = solve_sweep(named_case("parabola"))
-    table = sweep.table[list(SENSED)].copy()
-    table.loc[100, ["force_x", "force_y"]] = 1e6
-    table.loc[50:55, "moment_z"] = np.nan
-    assert read_measured(table).provenance[ASSUMED] == "L = EI = 1"
+    for columns, missing in (([], "foot_x=COLUMN:m"), (["foot_x=Weg [mm]"], "force_x=COLUMN:N")):
+        with pytest.raises(InputError, match=f"--column {missing}"):
+            read_measured(path, columns=columns)
 
 
 @pytest.mark.parametrize(
@@ -131,17 +127,13 @@ def test_a_spike_is_no_wrong_vibrissa():
         ("50 mm", "m", 0.05),
         ("5e1mm", "m", 0.05),
         ("-.5 m", "m", -0.5),
-        ("2 N m^2", "N m^2", 2.0),
         ("2 N*m**2", "N m^2", 2.0),
         ("3 kg m^3/s^2", "N m^2", 3.0),
         ("3 kg m/(s^2 m)", "N/m", 3.0),
-        ("4 1/m", "1/m", 4.0),
         ("4 m^-1", "1/m", 4.0),
         # As engineers and instruments write them.
         ("1 N·mm²", "N m^2", 1e-6),
         ("1 GPa mm^4", "N m^2", 1e-3),
-        ("1 N mm^2", "N m^2", 1e-6),
-        ("1 mN mm", "N m", 1e-6),
         ("1 Nm", "N m", 1.0),
         ("1 Nmm", "N m", 1e-3),
         ("1 mNm", "N m", 1e-3),

@@ -4,8 +4,6 @@ import math
 
 import pytest
 
-from analytic import InputError
-from compare.read.case import load_job
 from mujoco_models import Motion
 
 STEEL = """
@@ -22,23 +20,11 @@ lowest = ["0 mm", "40 mm"]
 PLAIN = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n[motion]\n'
 
 
-def motion(tmp_path, text):
-    path = tmp_path / "case.toml"
-    path.write_text(text)
-    return load_job(str(path)).motion
-
-
-def test_a_case_without_the_table_is_at_rest(tmp_path):
-    assert motion(tmp_path, PLAIN.removesuffix("[motion]\n")) is None
-    assert motion(tmp_path, PLAIN) == Motion()
-
-
-def test_units_become_natural_ones_by_the_density(tmp_path):
-    found = motion(
-        tmp_path,
+def test_units_become_natural_ones_by_the_density(load):
+    found = load(
         STEEL + 'density = "7850 kg/m^3"\nspeed = "20 mm/s"\ntimestep = "0.5 ms"\n'
         'solref = ["5 ms", 0.8]\ncutoff = "500 Hz"\nramp = 2.0\n',
-    )
+    ).motion
     # Rao, Mechanical Vibrations: omega = 1.8751^2 sqrt(EI/(rho A L^4)) of a uniform cantilever.
     mass = 7850 * math.pi * 0.25e-3**2
     period = 2 * math.pi / (1.8751040687**2 * math.sqrt(6.4e-4 / (mass * 0.1**4)))
@@ -49,7 +35,9 @@ def test_units_become_natural_ones_by_the_density(tmp_path):
     assert found.cutoff == pytest.approx(500 * period, rel=1e-9)
     assert found.ramp == 2.0  # a plain number is in T1
     by_period = STEEL + f'period = "{1e3 * period} ms"\nspeed = "20 mm/s"\n'
-    assert motion(tmp_path, by_period).speed == pytest.approx(found.speed, rel=1e-9)
+    assert load(by_period).motion.speed == pytest.approx(found.speed, rel=1e-9)
+    assert load(PLAIN).motion == Motion()
+    assert load(PLAIN.removesuffix("[motion]\n")).motion is None
 
 
 @pytest.mark.parametrize(
@@ -69,8 +57,5 @@ def test_units_become_natural_ones_by_the_density(tmp_path):
         (PLAIN + "solref = [0.1, 1.0]\ncontact_stiffness = 1e4\n", "motion.contact_stiffness"),
     ],
 )
-def test_what_is_wrong_is_one_line(tmp_path, text, said):
-    with pytest.raises(InputError) as error:
-        motion(tmp_path, text)
-    assert said in str(error.value)
-    assert "\n" not in str(error.value)
+def test_what_is_wrong_is_one_line(refused, text, said):
+    assert said in refused(text)

@@ -3,10 +3,13 @@
 And a browser that looks at any report.
 """
 
+import json
 import os
+import re
 import shutil
 import subprocess
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -26,9 +29,10 @@ NASTY = 'a <b>"case"</b> & <script>alert(1)</script> {{ 7 * 7 }} $$ ünder_score
 @pytest.fixture(scope="session")
 def film(tmp_path_factory) -> Film:
     folder = tmp_path_factory.mktemp("film")
-    Image.new("RGB", (80, 64), "white").save(folder / "film.gif")
-    Image.new("RGB", (80, 64), "white").save(folder / "still.png")
-    return Film(folder / "film.gif", folder / "still.png")
+    film = Film(folder / "film.gif", folder / "still.png")
+    for file in (film.gif, film.still):
+        Image.new("RGB", (80, 64), "white").save(file)
+    return film
 
 
 @pytest.fixture(scope="session")
@@ -66,5 +70,33 @@ def look(browser, tmp_path):
         ]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
         return done.stdout
+
+    return run
+
+
+# A window cannot be as narrow as a telephone, a frame in it can.
+FRAME = """<body><script>
+addEventListener("message", e => { document.body.dataset.found = e.data; });
+</script><iframe src="probed.html" style="width: WIDTHpx; height: 900px; border: 0"></iframe>"""
+# Errors are counted from the first script on.
+WATCH = """<head><script>
+window.wrong = []; addEventListener("error", e => wrong.push(e.message));
+</script>"""
+
+
+@pytest.fixture
+def probe(look, tmp_path):
+    """What a script finds in a page: the body of a function, run when all is loaded."""
+
+    def run(page: Path, script: str, width: int, *options: str) -> dict:
+        probe = f"""<script>addEventListener("load", () => {{
+          parent.postMessage(JSON.stringify((() => {{ {script} }})()), "*");
+        }});</script></body>"""
+        text = page.read_text(encoding="utf-8").replace("<head>", WATCH).replace("</body>", probe)
+        (tmp_path / "probed.html").write_text(text, encoding="utf-8")
+        (tmp_path / "frame.html").write_text(FRAME.replace("WIDTH", str(width)))
+        window = ("--window-size=1600,1000", "--virtual-time-budget=5000", "--dump-dom")
+        seen = look(tmp_path / "frame.html", *window, *options)
+        return json.loads(unescape(re.search(r'data-found="([^"]*)"', seen)[1]))
 
     return run

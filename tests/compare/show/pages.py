@@ -30,9 +30,6 @@ class Page(HTMLParser):
         if tag not in VOID:
             self._open.append(tag)
 
-    def handle_startendtag(self, tag, attrs):
-        self.elements.append((tag, dict(attrs)))
-
     def handle_endtag(self, tag):
         if not self._open or self._open[-1] != tag:
             self.faults.append(f"</{tag}> inside <{self._open[-1] if self._open else 'nothing'}>")

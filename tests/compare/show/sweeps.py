@@ -23,18 +23,13 @@ def exact(name: str) -> Readings:
 
 
 @cache
-def candidate(name: str, off: float = 1e-3) -> Readings:
+def candidate(name: str) -> Readings:
     """As a simulator would leave it: all clamp readings wave about the exact ones."""
     sweep = exact(name)
-    wave = 1 + off * np.sin(np.arange(STATIONS))
+    wave = 1 + 1e-3 * np.sin(np.arange(STATIONS))
     table = sweep.table.assign(**{n: wave * sweep.values(n) for n in CLAMP_READINGS})
-    settings = {"beam": "chain", "segments": 40}
-    provenance = {
-        **sweep.provenance,
-        "settings": settings,
-        "engine": "MuJoCo 4.0.0",
-        "seconds": 1.0,
-    }
+    said = {"settings": {"beam": "chain", "segments": 40}, "engine": "MuJoCo 4.0.0", "seconds": 1.0}
+    provenance = {**sweep.provenance, **said}
     return replace(sweep, table=table, source="mujoco chain", provenance=provenance)
 
 
@@ -54,9 +49,8 @@ def two_runs(folder: Path) -> Path:
         run = folder / f"{case}-chain"
         run.mkdir()
         contents = {"comparison.json": as_json(compare(exact(case), simulated).to_dict())}
-        if budget is not None:
-            contents |= budget_files(budget)
-        else:
+        contents |= {} if budget is None else budget_files(budget)
+        if budget is None:
             simulated.write(run / "mujoco-chain.parquet")
         for name, content in contents.items():
             write_whole(run / name, content)

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from analytic import InputError, curvatures, deflected_shapes
-from compare.show.animation import write_animation
+from compare.show.animation.plane import write_animation
 from tests.compare.show import sweeps
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
+from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances
 from compare.read.runs import EngineOutcome
 from compare.show.html import html
@@ -17,20 +17,19 @@ from compare.show.side_by_side import (
     side_by_side_document,
 )
 from tests.compare.command import vibrissa
+from tests.compare.show import sweeps
 
 
 @pytest.fixture(scope="module")
 def exact() -> Readings:
-    case = named_case("parabola")
-    return solve_sweep(replace(case, sweep=replace(case.sweep, stations=60)))
+    return sweeps.exact("parabola")
 
 
 def shifted(exact: Readings, share: float, seconds: float) -> Readings:
     """With a moment that is too large by `share`."""
     table = exact.table.assign(moment_z=exact.table["moment_z"] * (1 + share))
-    return replace(
-        exact, table=table, source="x", provenance={**exact.provenance, "seconds": seconds}
-    )
+    timed = {**exact.provenance, "seconds": seconds}
+    return replace(exact, table=table, source="x", provenance=timed)
 
 
 def test_known_shifts_come_out(exact):
@@ -38,8 +37,7 @@ def test_known_shifts_come_out(exact):
     ahead = foot_x - exact.snap_off > Tolerances().snap_off_window * np.ptp(foot_x)
     compared = moment[ahead & (exact.values("force_y") > 0)]
     rms = np.sqrt(np.mean(compared**2)) / np.abs(moment).max()
-    sweeps = {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)}
-    found = SideBySide.of(exact, sweeps)
+    found = SideBySide.of(exact, {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)})
     pairs = [*found.against.values(), *found.between.values()]
     assert [*found.against, *found.between] == ["a", "b", ("a", "b")]
     off = [one.disagreement["moment_z"].rms for one in pairs]
@@ -56,9 +54,11 @@ def test_command(exact, tmp_path):
     exact.write(tmp_path / "exact.csv")
     for name, share in (("near", 1e-3), ("far", 1e-2)):
         shifted(exact, share, 6.0).write(tmp_path / f"{name}.parquet")
-    done = vibrissa(
-        "compare", "exact.csv", "near.parquet", "far.parquet", "--out", "out", cwd=tmp_path
-    )
+
+    def run(*files):
+        return vibrissa("compare", *files, "--out", "out", cwd=tmp_path)
+
+    done = run("exact.csv", "near.parquet", "far.parquet")
     assert done.returncode == 1  # far is
     assert "far" in done.stdout
     assert "1e+02" in done.stdout  # ms a station
@@ -66,41 +66,28 @@ def test_command(exact, tmp_path):
     found = json.loads((tmp_path / "out/side-by-side.json").read_text())["comparisons"]
     assert [one["verdict"] for one in found] == ["agrees", "disagrees", "disagrees"]
     assert found[2]["names"] == ["near", "far"]
-    done = vibrissa("compare", "parabola", "near.parquet", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 0
-    done = vibrissa("compare", "parabola", "no.parquet", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "no.parquet" in done.stderr
-    twice = vibrissa("compare", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
-    assert twice.returncode == 2
-    assert "each file once" in twice.stderr
-
-
-CASE = replace(named_case("tip-only"), sweep=replace(named_case("tip-only").sweep, stations=40))
+    assert run("parabola", "near.parquet").returncode == 0
+    run("parabola", "no.parquet").refused("no.parquet")
+    run("parabola", "near.parquet", "near.parquet").refused("each file once")
 
 
 @pytest.fixture(scope="module")
-def many():
+def many(exact):
     """A vibrissa 1 % too stiff, of an engine that records no time and had three bad stations."""
-    exact = solve_sweep(CASE)
     table = exact.table.assign(**{name: 1.01 * exact.table[name] for name in CLAMP_READINGS})
     about = {"engine": "Mine 1.2", "unsettled": {"it sleeps": 2, "it slides": 1}}
     mine = replace(exact, table=table, source="mine", provenance=about)
     asked = [EngineOutcome("mine", "other model", "1.2", "nothing", None)]
-    return SideBySide.of(exact, {"mine": mine}, asked, case=CASE.name)
+    return SideBySide.of(exact, {"mine": mine}, asked, case="parabola")
 
 
-def test_the_cause_is_in_the_table_and_on_the_page(many):
+def test_cause_and_lack_of_time_are_in_table_page_and_picture(many):
     (row,) = outcomes_table({many.case: many.outcomes}).rows
     assert row[0] == "mine 1.2, other model"
+    assert row[-2] == "none"
     assert row[-1].startswith("disagrees; likely ")
     assert row[-1].endswith("3 stations unsettled, mostly as it sleeps")
     assert row[-1] in html(side_by_side_document(many)).replace("&#39;", "'")
-
-
-def test_one_without_times_is_in_table_and_picture(many):
-    (row,) = outcomes_table({many.case: many.outcomes}).rows
-    assert row[-2] == "none"
     figure = error_against_time(many)
     assert len(figure.axes[0].lines) == len(CLAMP_READINGS)
     assert [text.get_text() for text in figure.axes[0].texts] == ["mine, no time"]

@@ -1,0 +1,142 @@
+"""What was fitted to clamp readings, a vibrissa or an object, for people and as JSON."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from analytic import CLAMP_READINGS, Calibration, FittedObject
+from analytic.from_clamp.calibration.calibrate import Estimate
+from analytic.problem.quantities import QUANTITIES
+from analytic.space import FittedBody
+from analytic.space.from_clamp.noise import COMPONENTS
+from compare.show.document import Block, Table, Text
+from compare.show.numbers import quantity
+from compare.show.passes import consistency_line
+
+
+def calibration_summary(calibration: Calibration) -> Iterator[Block]:
+    """What a terminal shows: what was found, and how far it is to be trusted."""
+    passes, si = calibration.passes, calibration.case.beam.si
+    rows = []
+    for name, found in calibration.found.items():
+        unit = QUANTITIES["foot_x" if name == "offset" else name].dimension if si else ""
+        scatter = [_number(calibration.scatter[name])] if name in calibration.scatter else []
+        rows.append((*_interval(name, found), unit, *scatter))
+    head, of = ["found", "value", "95 % from", "to", ""], ""
+    if passes is not None:
+        head, of = [*head, "passes scatter by"], f" of {len(passes.numbers)} passes"
+    yield Table(f"From {calibration.stations} stations{of}", head, rows, words=(0, 4))
+    if passes is not None:
+        yield Text(consistency_line(passes))
+        if not passes.consistent:
+            yield Text(
+                "what the passes scatter by says more than the intervals, which are of noise"
+            )
+    names = [*calibration.found]
+    pairs = [(i, j) for j in range(len(names)) for i in range(j)]
+    if pairs:
+        i, j = max(pairs, key=lambda pair: abs(calibration.correlation[pair]))
+        alike = calibration.correlation[i, j]
+        yield Text(f"trading off most: {names[i]} and {names[j]}, correlation {alike:+.2f}")
+    if calibration.undistinguished is not None:
+        yield from map(Text, calibration.undistinguished.said())
+    yield from _left(calibration)
+    if calibration.jitter:
+        unit = " m" if si else ""
+        yield Text(f"the foot jitters by {calibration.jitter:.2g}{unit}; the intervals know it")
+    if calibration.misfit_shows:
+        yield Text(
+            "something else is not as the case says: the intervals hold for noise, not for that"
+        )
+
+
+def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
+    """What a terminal shows: the parameters, and how far they are to be trusted."""
+    unit = "m" if si else ""
+    rows = [
+        (*_interval(name, one), "" if name.startswith(("exponent", "log", "axis")) else unit)
+        for name, one in found.found.items()
+    ]
+    head = ("found", "value", "95 % from", "to", "")
+    caption = f"{found.family.capitalize()}, from {found.stations} stations"
+    yield Table(caption, head, rows, words=(0, 4))
+    if isinstance(found, FittedObject):
+        widest = quantity(float(found.band["half_width"].max()), "length", found.case.beam)
+        yield Text(f"where it was touched, the contour is known to {widest} or better (95 %)")
+    if len(found.rivals) > 1:
+        least = min(bic for bic, _ in found.rivals.values())
+        yield Table(
+            "Schwarz's criterion, over the least; the likeliest family has 0, and 10 is decisive",
+            ("family", "more by", "explains the readings"),
+            [
+                (name, f"{bic - least:.1f}", "yes" if explains else "no")
+                for name, (bic, explains) in found.rivals.items()
+            ],
+            words=(0, 2),
+        )
+    if isinstance(found, FittedObject) and found.passes is not None:
+        yield Text(consistency_line(found.passes))
+    yield from _left(found)
+    if not found.explains:
+        yield Text(
+            f"noise alone does not explain what is left: it is no {found.family}, or something "
+            "else is not as stated; the intervals hold for noise, not for that"
+        )
+
+
+def calibration_document(calibration: Calibration) -> dict[str, Any]:
+    """What ``calibration.json`` holds."""
+    passes, correlation = calibration.passes, calibration.noise.correlation.tolist()
+    return {
+        "case": calibration.case.name,
+        "found": calibration.found,
+        "correlation": calibration.correlation.tolist(),
+        "stations": calibration.stations,
+        "misfit": calibration.misfit,
+        "noise_correlation": dict(zip(CLAMP_READINGS, correlation, strict=True)),
+        "hum_stations": calibration.noise.hum or None,
+        "jitter": calibration.jitter,
+        "undistinguished": calibration.undistinguished,
+        "passes": passes
+        and {
+            "scatter": calibration.scatter,
+            "chi_square": passes.chi_square,
+            "degrees": passes.degrees,
+            "probability": passes.probability,
+        },
+    }
+
+
+def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
+    """What ``object.json`` holds."""
+    document: dict[str, Any] = {
+        "family": found.family,
+        "found": found.found,
+        "explains": found.explains,
+        "misfit": found.misfit,
+        "stations": found.stations,
+        "rivals": {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()},
+    }
+    if isinstance(found, FittedBody):
+        return document
+    return document | {
+        "chi_square": found.passes and found.passes.chi_square,
+        "probability": found.passes and found.passes.probability,
+        "band": {name: values.tolist() for name, values in found.band.items()},
+    }
+
+
+def _interval(name: str, found: Estimate) -> tuple[str, ...]:
+    return (name, *(_number(x) for x in (found.value, found.lowest, found.highest)))
+
+
+def _number(value: float) -> str:
+    return "infinite" if math.isinf(value) else f"{value:.5g}"
+
+
+def _left(found: Calibration | FittedObject | FittedBody) -> Iterator[Text]:
+    """What the fit leaves, and what is known of the noise."""
+    yield Text(f"the fit leaves {found.misfit:.2g} times the noise")
+    names = COMPONENTS if isinstance(found, FittedBody) else CLAMP_READINGS
+    for said in found.noise.said(names):
+        yield Text(f"{said}; the intervals know it")
