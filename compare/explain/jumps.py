@@ -14,6 +14,7 @@ _WHOLE = 1e-3  # of a step; so near to a multiple of it
 _STEPS = 200  # at most, over a reading: of more, the rounding is no cause of anything
 _HUM = 0.8  # fraction of the disagreement's square that one frequency must explain
 _TURNS = 8  # periods at least over the sweep: what is slower is a model's own error
+_FINER = 4  # frequencies for each of the sweep's own
 _ALONG = 0.8  # fraction that lies along the readings' slope, if the foot is off; by chance a third
 
 
@@ -65,11 +66,14 @@ def _humming(found: Measurement, error: Floats) -> str | None:
     if "segments" in found.candidate.provenance.get("settings", {}):
         return None
     stations = error.shape[1]
-    heard, turns = 0.0, 1.0
-    for tried in np.arange(_TURNS, stations / 2, 0.25):
-        phase = 2 * np.pi * tried * np.arange(stations) / stations
-        wave = np.linalg.qr(np.column_stack([np.ones(stations), np.cos(phase), np.sin(phase)]))[0]
-        heard, turns = max((heard, turns), (float(np.sum((error @ wave[:, 1:]) ** 2)), tried))
+    if stations <= 2 * _TURNS:
+        return None
+    level = error - error.mean(axis=1, keepdims=True)
+    power = np.sum(np.abs(np.fft.rfft(level, _FINER * stations)) ** 2, axis=0)
+    turns = (_TURNS + np.argmax(power[_FINER * _TURNS : -1]) / _FINER).item()
+    phase = 2 * np.pi * turns * np.arange(stations) / stations
+    wave = np.linalg.qr(np.column_stack([np.ones(stations), np.cos(phase), np.sin(phase)]))[0]
+    heard = float(np.sum((error @ wave[:, 1:]) ** 2))
     if heard < _HUM * np.sum(error**2):
         return None
     sizes = np.sqrt(2) * rms(error)

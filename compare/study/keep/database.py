@@ -110,9 +110,8 @@ def read(folder: Path, warn: Warn) -> Iterator[Row]:
 
 
 def _connect(path: Path, mode: str = "mode=rwc") -> sqlite3.Connection:
-    connection = sqlite3.connect(
-        f"{path.absolute().as_uri()}?{mode}", _PATIENCE, isolation_level=None, uri=True
-    )
+    uri = f"{path.absolute().as_uri()}?{mode}"
+    connection = sqlite3.connect(uri, timeout=_PATIENCE, isolation_level=None, uri=True)
     connection.text_factory = partial(str, encoding="utf-8", errors="replace")
     return connection
 
