@@ -31,7 +31,7 @@ class Family(ABC):
         """The body of these numbers."""
 
     @abstractmethod
-    def told(self, numbers: Floats) -> dict[str, float]:
+    def reported(self, numbers: Floats) -> dict[str, float]:
         """What of the body is reported."""
 
 
@@ -54,7 +54,7 @@ class Sphere(Family):
         """A sphere."""
         return sphere(float(numbers[0]), numbers[1:])
 
-    def told(self, numbers: Floats) -> dict[str, float]:
+    def reported(self, numbers: Floats) -> dict[str, float]:
         """All numbers."""
         return {"radius": float(numbers[0]), **_named("centre", numbers[1:])}
 
@@ -80,7 +80,7 @@ class Ellipsoid(Family):
         """An ellipsoid."""
         return ellipsoid(numbers[:3], numbers[3:])
 
-    def told(self, numbers: Floats) -> dict[str, float]:
+    def reported(self, numbers: Floats) -> dict[str, float]:
         """All numbers."""
         return {**_named("semi_axis", numbers[:3]), **_named("centre", numbers[3:])}
 
@@ -117,7 +117,7 @@ class Cylinder(Family):
         """An endless cylinder."""
         return cylinder(float(numbers[0]), *self._line(numbers))
 
-    def told(self, numbers: Floats) -> dict[str, float]:
+    def reported(self, numbers: Floats) -> dict[str, float]:
         """The axis as a unit vector, and its point beside the middle of the contacts."""
         through, axis = self._line(numbers)
         through = through + ((self.near - through) @ axis) * axis

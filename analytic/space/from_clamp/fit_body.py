@@ -325,11 +325,11 @@ def _with_noise(
 def _estimates(
     family: Family, numbers: Floats, covariance: Floats, length: float
 ) -> dict[str, Estimate]:
-    """What is told of the body, with intervals, in the unit of the readings."""
+    """What is reported of the body, with intervals, in the unit of the readings."""
     found = {}
-    for name, value in family.told(numbers).items():
+    for name, value in family.reported(numbers).items():
         slopes = [
-            (family.told(numbers + step)[name] - family.told(numbers - step)[name]) / (2 * _STEP)
+            (family.reported(numbers + step)[name] - family.reported(numbers - step)[name]) / (2 * _STEP)
             for step in _STEP * np.eye(len(numbers))
         ]
         half = DOUBLE_SIDED_95 * float(np.sqrt(slopes @ covariance @ np.array(slopes)))
