@@ -210,8 +210,13 @@ def _interpolated(name: str, given: object, length: float) -> Along:
     return Along.through([_trimmed(cubic) for cubic in cubics])
 
 
-def sampled(name: str, function: Callable[[Floats], Floats], length: float) -> Along:
-    """The series of a function, on pieces that are halved until it is exact there."""
+def sampled(
+    name: str, function: Callable[[Floats], Floats], length: float, breaks: Sequence[float] = ()
+) -> Along:
+    """The series of a function, on pieces that are halved until it is exact there.
+
+    At `breaks` it is known not to be smooth: no piece goes on beyond.
+    """
 
     def on(begin: float, end: float) -> tuple[Chebyshev, bool]:
         """A piece, and whether it is exact."""
@@ -226,7 +231,8 @@ def sampled(name: str, function: Callable[[Floats], Floats], length: float) -> A
     largest = float(np.abs(_values(name, function, np.linspace(0, length, 65))).max())
     largest = max(largest, _UNROUNDED)
     pieces = list[Chebyshev]()
-    ahead = list(pairwise(np.linspace(0, length, _FIRST + 1).tolist()))[::-1]
+    marks = np.unique([*np.linspace(0, length, _FIRST + 1), *breaks])
+    ahead = list(pairwise(marks.tolist()))[::-1]
     for _ in range(_MOST_LOOKS):
         if not ahead:
             break
@@ -237,17 +243,19 @@ def sampled(name: str, function: Callable[[Floats], Floats], length: float) -> A
             ahead += [(middle, end), (begin, middle)]
         elif end - begin > _NARROW * length:  # else a kink or a jump
             # The halves that led to a kink are one smooth piece.
-            while pieces and _NARROW * length < np.diff(pieces[-1].domain)[0]:
+            while (
+                pieces and begin not in breaks and _NARROW * length < np.diff(pieces[-1].domain)[0]
+            ):
                 joined, smooth = on(pieces[-1].domain[0], end)
                 # A jump next to an end lies beyond the outermost node: the parts have seen it.
                 if not smooth or any(
                     _apart(joined, part) > _JOINED * largest for part in (pieces[-1], found)
                 ):
                     break
-                found = joined
+                found, begin = joined, float(joined.domain[0])
                 del pieces[-1]
             pieces.append(found)
-    if ahead or len(pieces) > _MOST_PIECES:
+    if ahead or len(pieces) > _MOST_PIECES + len(breaks):
         raise InputError(name, f"a function that is rough at s = {begin:g}", _SMOOTH, _OR_PAIRS)
     ends = [0.0, *(float(piece.domain[1]) for piece in pieces[:-1]), length]
     whole = Along(tuple(ends), tuple(tuple(_trimmed(piece).coef.tolist()) for piece in pieces))

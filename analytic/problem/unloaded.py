@@ -94,7 +94,7 @@ class Unloaded:
     def _integrals(self) -> tuple[Along, Along, Along]:
         assert isinstance(self.natural, Along)
         turn = self.natural.integral()
-        name = "the vibrissa at rest"
-        x = sampled(name, lambda s: -np.sin(turn(s)), 1.0)
-        y = sampled(name, lambda s: np.cos(turn(s)), 1.0)
+        name, kinks = "the vibrissa at rest", turn.ends[1:-1]
+        x = sampled(name, lambda s: -np.sin(turn(s)), 1.0, kinks)
+        y = sampled(name, lambda s: np.cos(turn(s)), 1.0, kinks)
         return x.integral(), y.integral(), turn

@@ -51,10 +51,8 @@ def test_a_row_without_a_foot_position_is_dropped_and_counted(tmp_path):
     rig = Readings.read(path)
     assert rig.values("foot_x").tolist() == [1.0, 0.8]
     assert rig.provenance["rows_without_foot_x"] == 1
-    assert "1 row without foot_x dropped" in rig.source
     assert "1 row without foot_x dropped" in repr(rig)
-    strict = refusal(Readings, Readings.read_table(path))
-    assert "each with a finite foot_x" in strict
+    assert "each with a finite foot_x" in refusal(Readings, Readings.read_table(path))
 
 
 @pytest.mark.parametrize(
@@ -72,7 +70,6 @@ def test_a_cell_that_is_no_number_is_named_by_line_and_column(tmp_path, cell, sa
     "column",
     [
         pd.Series([True, False, True]),
-        pd.Series(["a", "b", "c"]),
         pd.Series([1.0, 2.0, 3.0]).astype("category"),
         pd.Series([0.0, np.inf, 0.0]),
         pd.Series([1j, 2j, 3j]),
@@ -110,33 +107,22 @@ def test_a_table_of_ones_own():
     assert table.index.tolist() == ["a", "b", "b"]
 
 
-def with_metadata(path, text: bytes):
-    columns = pa.table(FOUR).replace_schema_metadata({b"vibrissa": text})
-    pq.write_table(columns, path)
-    return path
-
-
 @pytest.mark.parametrize(
     "text",
     [
         b"[1]",
-        b"{",
         b"\xff",
         b"[" * 100_000,
-        b'{"provenance": [1]}',
         b'{"provenance": {"events": 3}}',
         b'{"beam": [1]}',
-        b'{"beam": {"length": "long"}}',
         b'{"beam": {"size": 1}}',
-        b'{"beam": {"length": true}}',
-        b'{"beam": {"length": 1e-200}}',
         b'{"source": 7}',
     ],
 )
 def test_damaged_metadata(tmp_path, text):
-    assert "sweep.parquet" in refusal(
-        Readings.read, with_metadata(tmp_path / "sweep.parquet", text)
-    )
+    path = tmp_path / "sweep.parquet"
+    pq.write_table(pa.table(FOUR).replace_schema_metadata({b"vibrissa": text}), path)
+    assert "sweep.parquet" in refusal(Readings.read, path)
 
 
 def test_what_is_no_file_is_not_opened(tmp_path):
@@ -180,26 +166,13 @@ def test_any_damage_to_a_file_is_one_line(tmp_path_factory, data):
         assert repr(sweep)
 
 
-CELLS = st.one_of(
-    st.floats(),
-    st.integers(-(10**30), 10**30),
-    st.booleans(),
-    st.none(),
-    st.text(max_size=5),
-    st.lists(st.integers(), max_size=2),
-)
+CELLS = st.one_of(st.floats(), st.integers(), st.booleans(), st.none(), st.text(max_size=5))
+COLUMNS = st.sampled_from([*FOUR, "phase", "status", "tip_angle"])
 
 
 @seed(3)
 @settings(max_examples=150, deadline=None)
-@given(
-    st.dictionaries(
-        st.sampled_from(
-            ["foot_x", "force_x", "force_y", "moment_z", "phase", "status", "tip_angle"]
-        ),
-        st.lists(CELLS, max_size=4),
-    )
-)
+@given(st.dictionaries(COLUMNS, st.lists(CELLS, max_size=4)))
 def test_any_columns_are_readings_or_one_line(columns):
     try:
         sweep = Readings.of({**FOUR, **columns})
@@ -218,17 +191,12 @@ def test_shown_on_one_screen():
 
 
 def test_plot_draws_the_three_readings():
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
     sweep = Readings.of({**FOUR, "moment_z": [0, np.nan, 0.4]}, source="rig <b>$$")
-    axes = sweep.plot()
-    assert [ax.get_ylabel() for ax in axes] == ["force_x", "force_y", "moment_z"]
+    axes = sweep.plot(Figure().subplots(3))
     np.testing.assert_array_equal(axes[0].lines[0].get_ydata(), FOUR["force_x"])
     axes[0].figure.canvas.draw()
-    plt.close(axes[0].figure)
 
 
 def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
