@@ -11,6 +11,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.case_shown import described, draw, ways
 from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
@@ -412,8 +413,6 @@ class Case(AnyCase, Shown):
         matplotlib.axes.Axes
             With equal scales.
         """
-        from analytic.problem.case_shown import draw
-
         ax = new_figure().subplots() if ax is None else ax
         draw(self, ax)
         return ax
@@ -422,8 +421,6 @@ class Case(AnyCase, Shown):
         self.plot(figure.subplots())
 
     def _tiles(self) -> dict[str, object]:
-        from analytic.problem.case_shown import described, ways
-
         return {
             "case": self.name,
             "object": self.profile.label,
