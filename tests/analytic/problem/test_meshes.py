@@ -49,21 +49,13 @@ def test_a_vertex_far_away_leaves_no_faces(tmp_path):
 
 
 @pytest.mark.parametrize("size", [1e-38, 1e-9, 1e9, 1e37])
+@pytest.mark.parametrize("turned_over", [slice(0), slice(None), slice(None, None, 2)])
 @pytest.mark.parametrize("suffix", ["stl", "ply"])
-def test_any_unit_of_length(tmp_path, suffix, size):
-    file = tmp_path / f"box.{suffix}"
-    trimesh.creation.box((size,) * 3).export(file)
-    assert_square(mesh_section(file), size / 2)
-
-
-def test_inside_out_and_mixed_faces(tmp_path):
-    box = trimesh.creation.box()
-    box.invert()
-    box.export(tmp_path / "inverted.stl")
-    assert_square(mesh_section(tmp_path / "inverted.stl"), 0.5)
-    box.faces[::2] = box.faces[::2][:, ::-1]
-    box.export(tmp_path / "mixed.stl")
-    assert_square(mesh_section(tmp_path / "mixed.stl"), 0.5)
+def test_any_unit_of_length_and_faces_that_look_inside(tmp_path, suffix, turned_over, size):
+    box = trimesh.creation.box((size,) * 3)
+    box.faces[turned_over] = box.faces[turned_over][:, ::-1]
+    box.export(tmp_path / f"box.{suffix}")
+    assert_square(mesh_section(tmp_path / f"box.{suffix}"), size / 2)
 
 
 def test_hull_on_request(tmp_path):
@@ -196,26 +188,23 @@ def test_a_lying_stl_does_not_fill_memory(tmp_path):
     assert "lying.stl" in refusal(mesh_section, tmp_path / "lying.stl")
 
 
-@pytest.mark.parametrize("suffix", ["obj", "off", "ply", "stl", "stl_ascii"])
-def test_comments_in_any_encoding(tmp_path, suffix, monkeypatch):
+NAME = "Größe".encode("latin-1")
+NAMED = {
+    "obj": lambda content: b"# " + NAME + b"\n" + content,
+    "off": lambda content: content.replace(b"OFF\n", b"OFF\n# " + NAME + b"\n", 1),
+    "ply": lambda content: content.replace(b"1.0\n", b"1.0\ncomment " + NAME + b"\n", 1),
+    "stl": lambda content: NAME.ljust(80) + content[80:],
+    "stl_ascii": lambda content: b"solid " + NAME + content[content.index(b"\n") :],
+}
+
+
+@pytest.mark.parametrize("kind", NAMED)
+def test_comments_in_any_encoding(tmp_path, kind, monkeypatch):
     """Sound files with a name in Latin-1, where a package that guesses encodings is missing."""
     monkeypatch.setitem(sys.modules, "charset_normalizer", None)
-    content = trimesh.creation.box().export(file_type=suffix)
-    content = content.encode() if isinstance(content, str) else content
-    name = "Größe".encode("latin-1")
-    match suffix:
-        case "obj":
-            content = b"# " + name + b"\n" + content
-        case "off":
-            content = b"OFF\n# " + name + b"\n" + content.removeprefix(b"OFF\n")
-        case "ply":
-            content = content.replace(b"1.0\n", b"1.0\ncomment " + name + b"\n", 1)
-        case "stl":
-            content = name.ljust(80) + content[80:]
-        case "stl_ascii":
-            content = b"solid " + name + content[content.index(b"\n") :]
-    file = tmp_path / f"box.{suffix.removesuffix('_ascii')}"
-    file.write_bytes(content)
+    content = trimesh.creation.box().export(file_type=kind)
+    file = tmp_path / f"box.{kind.removesuffix('_ascii')}"
+    file.write_bytes(NAMED[kind](content.encode() if isinstance(content, str) else content))
     assert_square(mesh_section(file), 0.5)
 
 

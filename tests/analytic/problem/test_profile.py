@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, seed, settings
+from hypothesis import assume, given, seed, settings
 from hypothesis import strategies as st
 
 from analytic import (
@@ -41,26 +41,25 @@ def waved(radius: float, depth: float, waves: float, phase: float) -> Profile:
     )
 
 
+IN_STEP = (64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2)  # with even samples
+
+
 @seed(11)
-@settings(max_examples=60, deadline=None)
-@given(st.floats(0.1, 3), st.floats(1.05, 3), st.floats(2, 3000), st.floats(0, 2 * np.pi))
+@settings(max_examples=120, deadline=None)
+@given(
+    st.floats(0.1, 3),
+    st.floats(0, 0.9) | st.floats(1.05, 3),
+    st.floats(2, 3000) | st.sampled_from(IN_STEP),
+    st.floats(0, 2 * np.pi),
+)
 def test_planted_waves_are_found(radius, depth, waves, phase):
-    """Bumps of any wavelength, also those in step with evenly spaced samples."""
-    with pytest.raises(InputError, match="strictly convex"):
-        waved(radius, depth, waves, phase)
-
-
-@pytest.mark.parametrize("waves", [64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2])
-def test_waves_in_step_with_the_samples(waves):
-    with pytest.raises(InputError, match="strictly convex"):
-        waved(1.0, 1.1, waves, 0.0)
-
-
-@seed(12)
-@settings(max_examples=60, deadline=None)
-@given(st.floats(0.1, 3), st.floats(0, 0.9), st.floats(2, 3000), st.floats(0, 2 * np.pi))
-def test_waves_that_leave_it_convex_pass(radius, depth, waves, phase):
-    assert waved(radius, depth, waves, phase).alpha_range == (-1.2, 1.2)
+    """Bumps of any wavelength; those that leave it convex pass."""
+    dip = depth * np.cos(waves * np.linspace(-1.2, 1.2, 20_001) + phase).max()
+    assume(abs(dip - 1) > 0.04)  # of few waves the lowest place may lie beyond the ends
+    if dip < 1:
+        assert waved(radius, depth, waves, phase).alpha_range == (-1.2, 1.2)
+    else:
+        assert "strictly convex" in refusal(waved, radius, depth, waves, phase)
 
 
 @seed(13)
@@ -177,15 +176,13 @@ def test_numbers_of_numpy_are_numbers():
 def test_a_straight_edge_is_refused(alpha, length, radius):
     """Round on both sides of it: two points with one slope angle, between which no place is."""
 
-    def along(t):
-        return length * (t > alpha)
-
-    with pytest.raises(InputError, match="straight between"):
-        Profile(
-            xi=lambda t: radius * np.sin(t) + along(t) * np.cos(alpha),
-            eta=lambda t: 1 - radius * np.cos(t) + along(t) * np.sin(alpha),
-            alpha_range=(-1.4, 1.4),
-        )
+    said = refusal(
+        Profile,
+        xi=lambda t: radius * np.sin(t) + length * (t > alpha) * np.cos(alpha),
+        eta=lambda t: 1 - radius * np.cos(t) + length * (t > alpha) * np.sin(alpha),
+        alpha_range=(-1.4, 1.4),
+    )
+    assert "straight between" in said
 
 
 @pytest.mark.parametrize("power", [3, 4, 5])
