@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.polyutils import trimcoef
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
@@ -34,6 +35,7 @@ _ALIKE = 1e-9  # of the largest value
 _ROUNDING = 4 * float(np.finfo(float).eps)
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _TO_SERIES = np.linalg.inv(chebvander(_NODES, _DEGREE))
+_CUBIC_NODES = np.cos(np.pi * (np.arange(4) + 0.5) / 4)
 _SMOOTH = "smooth but for a few kinks and jumps"
 _OR_PAIRS = "give pairs (arc length, value), or drop what is too narrow to matter"
 _SPANS = 1e-9  # of the length; by how much a table's ends may miss the vibrissa's
@@ -206,8 +208,10 @@ def _interpolated(name: str, given: object, length: float) -> Along:
     _check_span(name, s[0], s[-1], length)
     s[0], s[-1] = 0.0, length
     curve = PchipInterpolator(s, values)
-    cubics = [Chebyshev.interpolate(curve, 3, ends) for ends in pairwise(s.tolist())]
-    return Along.through([_trimmed(cubic) for cubic in cubics])
+    half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
+    at = curve(middle[:, None] + half[:, None] * _CUBIC_NODES)
+    cubics = np.linalg.solve(chebvander(_CUBIC_NODES, 3), at.T).T
+    return Along(tuple(s.tolist()), tuple(_trimmed(cubic) for cubic in cubics))
 
 
 def sampled(
@@ -258,7 +262,9 @@ def sampled(
     if ahead or len(pieces) > _MOST_PIECES + len(breaks):
         raise InputError(name, f"a function that is rough at s = {begin:g}", _SMOOTH, _OR_PAIRS)
     ends = [0.0, *(float(piece.domain[1]) for piece in pieces[:-1]), length]
-    whole = Along(tuple(ends), tuple(tuple(_trimmed(piece).coef.tolist()) for piece in pieces))
+    whole = Along(
+        tuple(ends), tuple(_trimmed(np.asarray(piece.coef, dtype=float)) for piece in pieces)
+    )
     places = np.linspace(0, length, _LOOKS)
     off = np.abs(_values(name, function, places) - whole(places)) > _ALIKE * largest
     off &= np.abs(places[:, None] - ends).min(axis=1) > _NARROW * length  # of a jump, either side
@@ -292,6 +298,6 @@ def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Float
     return found
 
 
-def _trimmed(piece: Chebyshev) -> Chebyshev:
-    """A piece without what is rounding at the end of its series."""
-    return piece.trim(_ROUNDING * np.abs(piece.coef).max())
+def _trimmed(series: Floats) -> tuple[float, ...]:
+    """A series without what is rounding at its end."""
+    return tuple(trimcoef(series, _ROUNDING * np.abs(series).max()).tolist())

@@ -97,6 +97,9 @@ def test_shape_at_rest_is_the_integral():
     assert x == pytest.approx(-quad(lambda s: np.sin(s * s), 0, 1)[0], abs=1e-15)
     assert y == pytest.approx(quad(lambda s: np.cos(s * s), 0, 1)[0], abs=1e-15)
     assert phi == pytest.approx(np.pi / 2 + 1, abs=1e-15)
+    two_arcs = Beam(natural_curvature=lambda s: np.where(s < 0.4, -0.3, 0.2))
+    height = two_arcs.unloaded.at(np.array(1.0))[1]
+    assert height == pytest.approx(np.sin(0.12) * (1 / 0.3 + 1 / 0.2), abs=1e-13)
 
 
 @pytest.mark.parametrize(
