@@ -71,11 +71,7 @@ def test_polygon_states_are_those_of_its_points():
 def test_order_of_vertices_does_not_matter():
     points = np.array([[-1, 1.2], [-0.5, 0.5], [0.2, 0.4], [1, 1.2]])
     one = polygon(points)
-    for other in (
-        points[::-1],
-        np.roll(points, 2, axis=0),
-        np.vstack([points, points[:1]]),
-    ):
+    for other in (points[::-1], np.roll(points, 2, axis=0), np.vstack([points, points[:1]])):
         np.testing.assert_array_equal(polygon(other).vertices, one.vertices)
 
 
@@ -89,10 +85,7 @@ def test_a_thin_vibrissa_on_a_sharp_corner():
 
 
 @settings(max_examples=25, deadline=None)
-@given(
-    st.lists(st.floats(-1.3, 1.3), min_size=3, max_size=9, unique=True),
-    st.floats(0.1, 0.7),
-)
+@given(st.lists(st.floats(-1.3, 1.3), min_size=3, max_size=9, unique=True), st.floats(0.1, 0.7))
 def test_any_polygon(angles, height):
     """Edges of random slopes: the sweep ends in a snap-off, in balance all the way."""
     slopes = np.sort(angles)
@@ -167,10 +160,7 @@ def test_families_are_what_their_equations_say(mirrored):
     for profile, height in (
         (catenary(0.5, -0.8), lambda x: np.cosh(x / 2) - 0.8),
         (parabola(0.7, 0.4), lambda x: 0.7 * x**2 + 0.4),
-        (
-            ellipse((2.0, 0.7), (0.0, 0.3)),
-            lambda x: 1.0 - 0.7 * np.sqrt(1 - (x / 2) ** 2),
-        ),
+        (ellipse((2.0, 0.7), (0.0, 0.3)), lambda x: 1.0 - 0.7 * np.sqrt(1 - (x / 2) ** 2)),
     ):
         shown = profile.mirrored() if mirrored else profile
         x, y = shown.place(alpha)
@@ -205,11 +195,7 @@ def test_families_are_what_their_equations_say(mirrored):
         ),
         (through_points, [[0, 0], [1, np.inf], [2, 3]], "point[1, 1]"),
         (through_points, [[0, 1], [1, 0], [1, 0.5], [2, 2]], "point 2"),
-        (
-            through_points,
-            [[0, 1], [1, 0], [2, 0.5], [3, 0.8]],
-            "point 2 from the left, (2, 0.5)",
-        ),
+        (through_points, [[0, 1], [1, 0], [2, 0.5], [3, 0.8]], "point 2 from the left, (2, 0.5)"),
         (through_points, [[0, 0], [1, 0], [2, 0]], "turn of 0 deg"),
     ],
 )

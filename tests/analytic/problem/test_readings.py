@@ -51,13 +51,7 @@ def test_measured_data_need_four_columns_only(tmp_path):
 
 @pytest.mark.parametrize(
     ("cell", "said"),
-    [
-        ("ERR", "'ERR'"),
-        ('"0,5"', "'0,5'"),
-        ("1_000", "'1_000'"),
-        ("inf", "inf"),
-        ("0 N", "'0 N'"),
-    ],
+    [("ERR", "'ERR'"), ('"0,5"', "'0,5'"), ("1_000", "'1_000'"), ("inf", "inf"), ("0 N", "'0 N'")],
 )
 def test_a_cell_that_is_no_number_is_named_by_line_and_column(tmp_path, cell, said):
     path = tmp_path / "rig.csv"
