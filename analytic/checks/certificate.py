@@ -130,11 +130,8 @@ def certify(readings: Readings) -> pd.DataFrame:
                 force_y,
                 moment,
                 along,
-                compliance=0.0,
                 clamp_angle=slope - np.pi / 2,
                 natural=lambda s: np.full_like(s, natural),
-                breaks=(),
-                flexibility=np.ones_like,
             )
             return Reached(end.x, end.y, end.phi, end.moment)
 

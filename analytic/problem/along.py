@@ -4,13 +4,15 @@ Functions and tables become Chebyshev series, to rounding. So the quantity is a 
 compared, hashed, pickled and written to a file, and integrated exactly.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.polyutils import trimcoef
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
@@ -32,8 +34,8 @@ _LOOKS = 4097  # places at which a function is compared with its series
 _ALIKE = 1e-9  # of the largest value
 _ROUNDING = 4 * float(np.finfo(float).eps)
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE))
-_CUBIC = 4  # coefficients
+_TO_SERIES = np.linalg.inv(chebvander(_NODES, _DEGREE))
+_CUBIC_NODES = np.cos(np.pi * (np.arange(4) + 0.5) / 4)
 _SMOOTH = "smooth but for a few kinks and jumps"
 _OR_PAIRS = "give pairs (arc length, value), or drop what is too narrow to matter"
 _SPANS = 1e-9  # of the length; by how much a table's ends may miss the vibrissa's
@@ -78,7 +80,7 @@ class Along:
             found = given
             _check_span(name, found.ends[0], found.ends[-1], length)
         elif callable(given):
-            found = _sampled(name, given, length)
+            found = sampled(name, given, length)
         else:
             found = _interpolated(name, given, length)
         constant = {piece[0] for piece in found.series if len(piece) == 1}
@@ -86,11 +88,17 @@ class Along:
             return constant.pop()
         return found
 
+    @classmethod
+    def through(cls, pieces: Sequence[Chebyshev]) -> "Along":
+        """From pieces next to each other."""
+        ends = [piece.domain[0] for piece in pieces]
+        series = tuple(tuple(piece.coef.tolist()) for piece in pieces)
+        return cls((*ends, pieces[-1].domain[1]), series)
+
     def __repr__(self) -> str:
-        ends = (
-            f"{float(self(np.array(self.ends[0]))):g} to {float(self(np.array(self.ends[-1]))):g}"
-        )
-        return f"<{ends} along s = {self.ends[0]:g} to {self.ends[-1]:g}>"
+        begin, end = self.ends[0], self.ends[-1]
+        first, last = self(np.array([begin, end]))
+        return f"<{first:g} to {last:g} along s = {begin:g} to {end:g}>"
 
     def __format__(self, _: str) -> str:
         return repr(self)
@@ -114,29 +122,33 @@ class Along:
 
     def integral(self) -> "Along":
         """The integral from the clamp."""
-        series, reached = [], 0.0
-        for piece, half in zip(self.series, self._half, strict=True):
-            found = half * chebyshev.chebint(piece, lbnd=-1)
-            found[0] += reached
-            reached = float(found.sum())
-            series.append(tuple(found.tolist()))
-        return Along(self.ends, tuple(series))
+        pieces, reached = list[Chebyshev](), 0.0
+        for piece in self._pieces:
+            found = piece.integ(lbnd=piece.domain[0], k=reached)
+            reached = float(found.coef.sum())
+            pieces.append(found)
+        return Along.through(pieces)
 
     def first_not_positive(self) -> float | None:
         """Where the quantity is first zero, but for rounding, or negative."""
         nothing = _NOTHING * float(np.abs(self._coefficients).sum(axis=0).max())
         vanishes = None
-        for piece, middle, half in zip(self.series, self._middle, self._half, strict=True):
-            roots = chebyshev.chebroots(piece) if len(piece) > 1 else np.empty(0)
-            real = roots.real[(abs(roots.imag) < 1e-12) & (abs(roots.real) <= 1)]
-            at = np.sort(np.concatenate([[-1.0], real, [1.0]]))
+        for piece in self._pieces:
+            (begin, end), roots = piece.domain, piece.roots()
+            real = roots.real[abs(roots.imag) < 1e-12 * (end - begin)]
+            at = np.sort(np.concatenate([[begin], real[(real > begin) & (real < end)], [end]]))
             at = np.append(at, (at[1:] + at[:-1]) / 2)
-            values = chebyshev.chebval(at, piece)
+            values = piece(at)
             if (values <= 0).any():
-                return float(middle + half * at[values <= 0].min())
+                return float(at[values <= 0].min())
             if vanishes is None and (values <= nothing).any():
-                vanishes = float(middle + half * at[np.argmin(values)])
+                vanishes = float(at[np.argmin(values)])
         return vanishes
+
+    @property
+    def _pieces(self) -> list[Chebyshev]:
+        ends = pairwise(self.ends)
+        return [Chebyshev(piece, end) for piece, end in zip(self.series, ends, strict=True)]
 
     @cached_property
     def _inner(self) -> Floats:
@@ -157,6 +169,18 @@ class Along:
         for i, piece in enumerate(self.series):
             found[: len(piece), i] = piece
         return found
+
+
+def values_at(quantity: float | Along, s: Floats) -> Floats:
+    """A quantity at arc lengths, whether it varies or not."""
+    return quantity(s) if isinstance(quantity, Along) else np.full_like(s, quantity)
+
+
+def rescaled(quantity: float | Along, factor: float, stretch: float = 1.0) -> float | Along:
+    """A quantity in other units, whether it varies or not."""
+    if isinstance(quantity, Along):
+        return quantity.times(factor, stretch)
+    return quantity * factor
 
 
 def _check_span(name: str, begin: float, end: float, length: float) -> None:
@@ -185,56 +209,62 @@ def _interpolated(name: str, given: object, length: float) -> Along:
     s[0], s[-1] = 0.0, length
     curve = PchipInterpolator(s, values)
     half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
-    nodes = np.cos(np.pi * (np.arange(_CUBIC) + 0.5) / _CUBIC)
-    at = curve(middle[:, None] + half[:, None] * nodes)
-    series = np.linalg.solve(chebyshev.chebvander(nodes, _CUBIC - 1), at.T).T
-    return Along(tuple(s.tolist()), tuple(_trimmed(piece) for piece in series))
+    at = curve(middle[:, None] + half[:, None] * _CUBIC_NODES)
+    cubics = np.linalg.solve(chebvander(_CUBIC_NODES, 3), at.T).T
+    return Along(tuple(s.tolist()), tuple(_trimmed(cubic) for cubic in cubics))
 
 
-def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> Along:
-    """The series of a function, on pieces that are halved until it is exact there."""
+def sampled(
+    name: str, function: Callable[[Floats], Floats], length: float, breaks: Sequence[float] = ()
+) -> Along:
+    """The series of a function, on pieces that are halved until it is exact there.
 
-    def series_on(begin: float, end: float) -> tuple[Floats, bool]:
-        nodes = (begin + end) / 2 + (end - begin) / 2 * _NODES
-        values = _values(name, function, nodes)
+    At `breaks` it is known not to be smooth: no piece goes on beyond.
+    """
+
+    def on(begin: float, end: float) -> tuple[Chebyshev, bool]:
+        """A piece, and whether it is exact."""
+        values = _values(name, function, _nodes(begin, end))
         if values.min() == values.max():
-            return values[:1], True
-        found = _TO_SERIES @ values
+            return Chebyshev(values[:1], (begin, end)), True
+        series = _TO_SERIES @ values
         size = max(float(np.abs(values).max()), _LEAST * largest)
-        return found, bool(np.abs(found[-_TAIL:]).max() <= _EXACT * size)
+        exact = bool(np.abs(series[-_TAIL:]).max() <= _EXACT * size)
+        return Chebyshev(series, (begin, end)), exact
 
     largest = float(np.abs(_values(name, function, np.linspace(0, length, 65))).max())
     largest = max(largest, _UNROUNDED)
-    ends, pieces = [0.0], list[Floats]()
-    marks = np.linspace(0, length, _FIRST + 1).tolist()
-    ahead = list(pairwise(marks))[::-1]
+    pieces = list[Chebyshev]()
+    marks = np.unique([*np.linspace(0, length, _FIRST + 1), *breaks])
+    ahead = list(pairwise(marks.tolist()))[::-1]
     for _ in range(_MOST_LOOKS):
         if not ahead:
             break
         begin, end = ahead.pop()
-        found, exact = series_on(begin, end)
+        found, exact = on(begin, end)
         if not exact and end - begin > length / 2**_HALVINGS:
             middle = (begin + end) / 2
             ahead += [(middle, end), (begin, middle)]
         elif end - begin > _NARROW * length:  # else a kink or a jump
             # The halves that led to a kink are one smooth piece.
-            while pieces and _NARROW * length < ends[-1] - ends[-2]:
-                joined, smooth = series_on(ends[-2], end)
-                parts = ((ends[-2], ends[-1], pieces[-1]), (begin, end, found))
+            while (
+                pieces and begin not in breaks and _NARROW * length < np.diff(pieces[-1].domain)[0]
+            ):
+                joined, smooth = on(pieces[-1].domain[0], end)
                 # A jump next to an end lies beyond the outermost node: the parts have seen it.
-                if not smooth or not all(
-                    np.abs(at - there).max() <= _JOINED * largest
-                    for at, there in (_both(joined, (ends[-2], end), part) for part in parts)
+                if not smooth or any(
+                    _apart(joined, part) > _JOINED * largest for part in (pieces[-1], found)
                 ):
                     break
-                found = joined
-                del ends[-1], pieces[-1]
-            ends.append(end)
+                found, begin = joined, float(joined.domain[0])
+                del pieces[-1]
             pieces.append(found)
-    if ahead or len(pieces) > _MOST_PIECES:
+    if ahead or len(pieces) > _MOST_PIECES + len(breaks):
         raise InputError(name, f"a function that is rough at s = {begin:g}", _SMOOTH, _OR_PAIRS)
-    ends[-1] = length
-    whole = Along(tuple(ends), tuple(_trimmed(piece) for piece in pieces))
+    ends = [0.0, *(float(piece.domain[1]) for piece in pieces[:-1]), length]
+    whole = Along(
+        tuple(ends), tuple(_trimmed(np.asarray(piece.coef, dtype=float)) for piece in pieces)
+    )
     places = np.linspace(0, length, _LOOKS)
     off = np.abs(_values(name, function, places) - whole(places)) > _ALIKE * largest
     off &= np.abs(places[:, None] - ends).min(axis=1) > _NARROW * length  # of a jump, either side
@@ -244,15 +274,14 @@ def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> 
     return whole
 
 
-def _both(
-    joined: Floats, ends: tuple[float, float], part: tuple[float, float, Floats]
-) -> tuple[Floats, Floats]:
-    """Two series at the nodes of a part: that of the whole between two ends, and the part's own."""
-    begin, end, own = part
-    nodes = (begin + end) / 2 + (end - begin) / 2 * _NODES
-    x = (2 * nodes - ends[0] - ends[1]) / (ends[1] - ends[0])
-    at, there = chebyshev.chebval(x, joined), chebyshev.chebval(_NODES, own)
-    return np.asarray(at, dtype=float), np.asarray(there, dtype=float)
+def _nodes(begin: float, end: float) -> Floats:
+    return (begin + end) / 2 + (end - begin) / 2 * _NODES
+
+
+def _apart(whole: Chebyshev, part: Chebyshev) -> float:
+    """By how much a part differs from the series of the whole."""
+    at = _nodes(*part.domain)
+    return float(np.abs(whole(at) - part(at)).max())
 
 
 def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Floats:
@@ -270,7 +299,5 @@ def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Float
 
 
 def _trimmed(series: Floats) -> tuple[float, ...]:
-    """The series without what is rounding at its end."""
-    counts = np.flatnonzero(np.abs(series) > _ROUNDING * np.abs(series).max())
-    last = int(counts[-1]) if counts.size else 0
-    return tuple(series[: last + 1].tolist())
+    """A series without what is rounding at its end."""
+    return tuple(trimcoef(series, _ROUNDING * np.abs(series).max()).tolist())

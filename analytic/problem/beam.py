@@ -8,7 +8,7 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.along import Along
+from analytic.problem.along import Along, rescaled, values_at
 from analytic.problem.arrays import Floats
 from analytic.problem.beam_checks import checked_curvature, checked_radii, checked_rigidity
 from analytic.problem.errors import InputError, require
@@ -109,19 +109,14 @@ class Beam:
     @cached_property
     def base_rigidity(self) -> float:
         """Flexural rigidity at the clamp [force length^2]."""
-        rigidity = self._rigidity
-        return float(rigidity(np.zeros(1))[0]) if isinstance(rigidity, Along) else rigidity
+        return float(values_at(self._rigidity, np.zeros(1))[0])
 
     @cached_property
     def unloaded(self) -> Unloaded:
         """Shape and radius at rest, dimensionless."""
-        natural, length = self._natural, self.length
-        if isinstance(natural, Along):
-            curvature: float | Along = natural.times(length, 1 / length)
-        else:
-            curvature = natural * length
-        tip = self.radius if self.tip_radius is None else self.tip_radius
-        return Unloaded(curvature, self.radius / length, tip / length)
+        length = self.length
+        curvature = rescaled(self._natural, length, 1 / length)
+        return Unloaded(curvature, self.radius / length, self._tip_radius / length)
 
     def rigidity_at(self, s: ArrayLike) -> Floats:
         """Flexural rigidity EI.
@@ -136,12 +131,10 @@ class Beam:
         array, shape of `s`
             [force length^2].
         """
-        s, rigidity = np.asarray(s, dtype=float), self._rigidity
-        if isinstance(rigidity, Along):
-            return rigidity(s)
-        if self._is_cone:
-            return rigidity * (self.radius_at(s) / self.radius) ** 4
-        return np.full_like(s, rigidity)
+        rigidity = values_at(self._rigidity, np.asarray(s, dtype=float))
+        if self._is_cone and not isinstance(self._rigidity, Along):
+            rigidity *= (self.radius_at(s) / self.radius) ** 4
+        return rigidity
 
     def curvature_at(self, s: ArrayLike) -> Floats:
         """Natural curvature.
@@ -156,8 +149,7 @@ class Beam:
         array, shape of `s`
             Positive to the left of the way from clamp to tip [1/length].
         """
-        s, natural = np.asarray(s, dtype=float), self._natural
-        return natural(s) if isinstance(natural, Along) else np.full_like(s, natural)
+        return values_at(self._natural, np.asarray(s, dtype=float))
 
     def radius_at(self, s: ArrayLike) -> Floats:
         """Radius of the cross-section.
@@ -173,8 +165,7 @@ class Beam:
             [length].
         """
         s = np.asarray(s, dtype=float)
-        tip = self.radius if self.tip_radius is None else self.tip_radius
-        return self.radius + (tip - self.radius) * s / self.length
+        return self.radius + (self._tip_radius - self.radius) * s / self.length
 
     def scaled(self, length: float = 1.0, rigidity: float = 1.0) -> "Beam":
         """The vibrissa with another length or flexural rigidity.
@@ -189,15 +180,12 @@ class Beam:
         Beam
             As it is else.
         """
-        old_rigidity, natural = self._rigidity, self._natural
-        if isinstance(natural, Along):
-            natural = natural.times(1, length)
-        if isinstance(old_rigidity, Along):
-            stiffer: float | Along = old_rigidity.times(rigidity, length)
-        else:
-            stiffer = old_rigidity * rigidity
-        longer = self.length * length
-        return replace(self, length=longer, flexural_rigidity=stiffer, natural_curvature=natural)
+        return replace(
+            self,
+            length=self.length * length,
+            flexural_rigidity=rescaled(self._rigidity, rigidity, length),
+            natural_curvature=rescaled(self._natural, 1, length),
+        )
 
     def mirrored(self) -> "Beam":
         """The mirror image, x to -x.
@@ -207,15 +195,17 @@ class Beam:
         Beam
             Curved the other way at rest.
         """
-        natural = self._natural
-        if natural == 0:
+        if self._natural == 0:
             return self
-        opposite = natural.times(-1) if isinstance(natural, Along) else -natural
-        return replace(self, natural_curvature=opposite)
+        return replace(self, natural_curvature=rescaled(self._natural, -1))
 
     @property
     def _is_cone(self) -> bool:
         return self.tip_radius not in (None, self.radius)
+
+    @property
+    def _tip_radius(self) -> float:
+        return self.radius if self.tip_radius is None else self.tip_radius
 
     @property
     def _rigidity(self) -> float | Along:

@@ -11,26 +11,20 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.case_shown import described, draw, ways
 from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
 from analytic.problem.first_touch import first_on_way
+from analytic.problem.limits import AnyCase
 from analytic.problem.numbers import pair, within
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.provenance import recorded_contours
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import FirstTouch, first_touch
 from analytic.problem.shown import Shown, new_figure
-from analytic.problem.support import (
-    Support,
-    beyond_the_paper,
-    check_support,
-    is_plain,
-    require_plain,
-    require_weightless,
-    support_record,
-)
+from analytic.problem.support import Support, check_support, support_record
 from analytic.problem.unloaded import Unloaded
 
 if TYPE_CHECKING:
@@ -42,7 +36,7 @@ _SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
 
 
 @dataclass(frozen=True, repr=False)
-class Case(Shown):
+class Case(AnyCase, Shown):
     """What every engine is given: physics only, no numerics.
 
     Parameters
@@ -257,96 +251,6 @@ class Case(Shown):
         highest = float(self.poses.at(self.way).foot_y.max())
         return contact_range(self.centreline.raised(-highest) if highest else self.centreline)
 
-    @property
-    def is_plain(self) -> bool:
-        """Whether vibrissa and object are the paper's: straight, uniform, upright, one contour."""
-        return (
-            not self.others and isinstance(self.sweep, Sweep) and is_plain(self.beam, self.support)
-        )
-
-    def require_plain(self, who: str) -> None:
-        """Refuse a case that is not the paper's vibrissa.
-
-        Parameters
-        ----------
-        who : str
-            Who can take nothing else into account.
-
-        Raises
-        ------
-        InputError
-            If the vibrissa is curved at rest, heavy or not uniform, its clamp turns or leans, or it
-            rubs.
-        """
-        require_plain(who, self.beam, self.support)
-        self.require_upright(who)
-
-    def require_upright(self, who: str) -> None:
-        """Refuse a case whose clamp leans or turns, or leaves its line, or that has a weight.
-
-        Parameters
-        ----------
-        who : str
-            Who cannot take that into account.
-
-        Raises
-        ------
-        InputError
-            If it leans.
-        """
-        self.require_sweep(who)
-        require_weightless(who, self.support)
-        if self.clamp_angle:
-            allowed = f"0: {who} cannot take it into account"
-            raise InputError("clamp_angle", self.clamp_angle, allowed, "leave it out")
-
-    def require_sweep(self, who: str) -> Sweep:
-        """Refuse a case whose clamp turns or leaves its line on its way.
-
-        Parameters
-        ----------
-        who : str
-            Who cannot take that into account.
-
-        Returns
-        -------
-        Sweep
-            The case's own.
-
-        Raises
-        ------
-        InputError
-            If it does, or if there are several objects.
-        """
-        self.require_one_object(who)
-        return self._require_line(who)
-
-    def require_one_object(self, who: str) -> None:
-        """Refuse a case with several objects.
-
-        Parameters
-        ----------
-        who : str
-            Who can take one only.
-
-        Raises
-        ------
-        InputError
-            If there are more.
-        """
-        if self.others:
-            allowed = f"1: {who} can take no more"
-            remedy = "solve it in closed form (exact), or sweep past one"
-            raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
-
-    def _require_line(self, who: str) -> Sweep:
-        if not isinstance(self.sweep, Sweep):
-            what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
-            allowed = f"a Sweep, with the foot along its line: {who} can do no other"
-            remedy = "take the closed form or MuJoCo"
-            raise InputError("way of the clamp", what, allowed, remedy)
-        return self.sweep
-
     def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
         """The same sweep between other positions of the foot.
 
@@ -509,8 +413,6 @@ class Case(Shown):
         matplotlib.axes.Axes
             With equal scales.
         """
-        from analytic.problem.case_shown import draw
-
         ax = new_figure().subplots() if ax is None else ax
         draw(self, ax)
         return ax
@@ -519,14 +421,11 @@ class Case(Shown):
         self.plot(figure.subplots())
 
     def _tiles(self) -> dict[str, object]:
-        from analytic.problem.case_shown import described, ways
-
-        beyond = beyond_the_paper(self.beam, self.support)
         return {
             "case": self.name,
             "object": self.profile.label,
             "beam": described(self.beam),
-            **{name: f"{value:g}" for name, value in beyond.items()},
+            **{name: f"{value:g}" for name, value in self.beyond_the_paper.items()},
             "stations": ways(self),
         }
 
@@ -536,15 +435,21 @@ class Case(Shown):
         return 1 if self.sweep.direction == "right" else -1
 
     @cached_property
+    def _leftward(self) -> tuple[Contour, tuple[float, float]]:
+        """Contour and reach of the sweep to the left that this one is, or mirrors."""
+        if self._way < 0:
+            return self.centreline, self.reach
+        mirrored = self.centreline.mirrored()
+        return mirrored, contact_range(mirrored)
+
+    @cached_property
     def _first_contact(self) -> float:
         if self.beam.varies or self.unloaded.most_turned:
+            held, beam = self.support, self.beam
             if self._way > 0:
-                mirrored = self.centreline.mirrored()
-                rest = self.support.mirrored().at_rest(self.beam.mirrored()).shape
-                return -first_touch(mirrored, contact_range(mirrored), rest).p
-            return first_touch(self.centreline, self.reach, self.unloaded).p
-        left, right = self.reach
-        first = left if self._way > 0 else right
+                held, beam = held.mirrored(), beam.mirrored()
+            return -self._way * first_touch(*self._leftward, held.at_rest(beam).shape).p
+        first = self.reach[0 if self._way > 0 else 1]
         return float(self.centreline.place(np.array([first]))[0][0])
 
     @cached_property
@@ -562,7 +467,5 @@ class Case(Shown):
         if self.others:
             alone = [replace(self, others=()), *self.alone]
             return max((one._stop for one in alone), key=lambda stop: self._way * stop)
-        if self._way > 0:
-            mirrored = self.centreline.mirrored()
-            return (_MARGIN - out_of_reach(mirrored, *contact_range(mirrored))) * self.beam.length
-        return (out_of_reach(self.centreline, *self.reach) - _MARGIN) * self.beam.length
+        contour, reach = self._leftward
+        return self._way * (_MARGIN - out_of_reach(contour, *reach)) * self.beam.length

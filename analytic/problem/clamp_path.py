@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -25,10 +25,7 @@ _LEAST = 1e-9  # rad or L; stations must differ by more than rounding
 class ClampWay(ABC):
     """A way of the clamp, station by station."""
 
-    @property
-    @abstractmethod
-    def running(self) -> Running:
-        """The column over which it runs."""
+    running: ClassVar[Running]
 
     @property
     @abstractmethod
@@ -50,7 +47,7 @@ class TurningWay(ClampWay):
 
     @abstractmethod
     def poses(self, length: float) -> Poses:
-        """The way to the left, dimensionless."""
+        """The way to the left, dimensionless, over a parameter that falls."""
 
     @abstractmethod
     def mirrored(self) -> "TurningWay":
@@ -88,6 +85,7 @@ class Sweep(ClampWay):
     start: float | None = None
     stop: float | None = None
     direction: Direction = "left"
+    running: ClassVar[Running] = "foot_x"
 
     def __post_init__(self) -> None:
         stations = whole("sweep.stations", self.stations, 2, MOST_STATIONS)
@@ -98,11 +96,6 @@ class Sweep(ClampWay):
         if self.direction not in get_args(Direction):
             remedy = "it is where the foot moves to"
             raise InputError("sweep.direction", repr(self.direction), "left or right", remedy)
-
-    @property
-    def running(self) -> Running:
-        """The column over which it runs."""
-        return "foot_x"
 
 
 @dataclass(frozen=True)
@@ -118,17 +111,13 @@ class Whisk(TurningWay):
         the left is what a sweep to the left is, with the object on that side.
     stations : int
         Number of stations, from 2 to 1,000,000.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
 
     foot_x: float = 0.0
     start: float = -1.2
     stop: float = 0.8
     stations: int = 200
+    running: ClassVar[Running] = "clamp_angle"
 
     def __post_init__(self) -> None:
         stations = whole("whisk.stations", self.stations, 2, MOST_STATIONS)
@@ -149,11 +138,6 @@ class Whisk(TurningWay):
     def direction(self) -> Direction:
         """Where the clamp turns to."""
         return "left" if self.stop > self.start else "right"
-
-    @property
-    def running(self) -> Running:
-        """The column over which it runs."""
-        return "clamp_angle"
 
     def stations_along(self, length: float) -> Floats:
         """Values of that column."""
@@ -192,6 +176,7 @@ class ClampPath(TurningWay):
     foot_x: Sequence[float]
     foot_y: Sequence[float]
     clamp_angle: Sequence[float]
+    running: ClassVar[Running] = "travel"
 
     def __post_init__(self) -> None:
         what = "as many numbers as stations, 2 or more"
@@ -225,34 +210,18 @@ class ClampPath(TurningWay):
         gone = self.foot_x[0] - self.foot_x[-1] or self.clamp_angle[-1] - self.clamp_angle[0]
         return "left" if gone >= 0 else "right"
 
-    @property
-    def running(self) -> Running:
-        """The column over which it runs."""
-        return "travel"
-
-    def dimensionless(self, length: float) -> Floats:
-        """Its poses over the vibrissa's length.
-
-        Parameters
-        ----------
-        length : float
-            Of the vibrissa [length].
-
-        Returns
-        -------
-        array, shape (stations, 3)
-            Foot and angle [L, L, rad].
-        """
+    def _dimensionless(self, length: float) -> Floats:
+        """Its poses over the vibrissa's length, shape (stations, 3)."""
         foot = np.array([self.foot_x, self.foot_y]) / length
         return np.column_stack([*foot, self.clamp_angle])
 
     def stations_along(self, length: float) -> Floats:
         """Values of that column: a turn counts as far as it takes the tip [length]."""
-        return travelled(self.dimensionless(length)) * length
+        return travelled(self._dimensionless(length)) * length
 
     def poses(self, length: float) -> Poses:
         """The way, dimensionless, over less what it has travelled."""
-        given = self.dimensionless(length)
+        given = self._dimensionless(length)
         return Through(tuple((-travelled(given)).tolist()), tuple(map(tuple, given.tolist())))
 
     def mirrored(self) -> "ClampPath":

@@ -54,9 +54,8 @@ def first_on_way(
     known = [one for one in found if one is not None and reach[0] <= one.t <= reach[1]]
     if not known:
         allowed = f"such that it first touches the lower side of the object ({contour.label})"
-        raise InputError(
-            "way of the clamp", "one on which the vibrissa does not", allowed, "turn it"
-        )
+        what = "one on which the vibrissa does not"
+        raise InputError("way of the clamp", what, allowed, "turn it")
     return max(known, key=lambda one: one.p)
 
 
@@ -100,11 +99,9 @@ def _at_tip(
         return None
     alpha, angle = contour.at(found[:1]).alpha, poses.at(found[1:]).angle
     excess = float((slope + angle - alpha)[0]) - rest.lean
-    return (
-        FirstTouch(float(found[0]), max(excess, 0.0), float(found[1]))
-        if excess >= -_ROUNDING
-        else None
-    )
+    if excess < -_ROUNDING:
+        return None
+    return FirstTouch(float(found[0]), max(excess, 0.0), float(found[1]))
 
 
 def _along(

@@ -59,10 +59,8 @@ def _check_place(contour: Contour, ends: tuple[float, float]) -> None:
         remedy = "the vibrissa feels a straight wall: check the units, or cut a part out"
         raise InputError(name, f"{right - left:.6g} L", f"at most {_WIDEST:g} L", remedy)
     if not max(abs(left), abs(right)) <= FARTHEST:
-        what, allowed = (
-            f"x from {left:.6g} L to {right:.6g} L",
-            f"within {FARTHEST:g} L of the origin",
-        )
+        what = f"x from {left:.6g} L to {right:.6g} L"
+        allowed = f"within {FARTHEST:g} L of the origin"
         remedy = "move the origin to the object, or check the units of object and beam"
         raise InputError(f"place of the object ({contour.label})", what, allowed, remedy)
 

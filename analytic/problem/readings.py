@@ -10,19 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.beam import Beam, Varying
+from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
+from analytic.problem.limits import OfVibrissa
 from analytic.problem.places import Place, row_number
 from analytic.problem.provenance import check_provenance, recorded_contours
-from analytic.problem.support import (
-    Support,
-    beyond_the_paper,
-    require_plain,
-    support_of,
-    support_record,
-)
+from analytic.problem.support import Support, support_of, support_record
 from analytic.problem.sweep_table import SweepTable, usable
 
 if TYPE_CHECKING:
@@ -30,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Readings(SweepTable):
+class Readings(OfVibrissa, SweepTable):
     """One sweep, in the units of its beam.
 
     Parameters
@@ -200,18 +195,7 @@ class Readings(SweepTable):
         return bool((x[-1] - x[0] or angle[0] - angle[-1]) > 0)
 
     def require_sweep(self, who: str) -> None:
-        """Refuse readings of a clamp that turns, or leaves its line, on its way.
-
-        Parameters
-        ----------
-        who : str
-            Who cannot take that into account.
-
-        Raises
-        ------
-        InputError
-            If it does.
-        """
+        """Refuse readings of a clamp that turns or leaves its line on its way."""
         if self.running != "foot_x":
             allowed = f"a foot along its line in a clamp that keeps its angle, for {who}"
             raise InputError(f"readings over {self.running}", self.source, allowed)
@@ -232,28 +216,6 @@ class Readings(SweepTable):
         held = self.support._replace(friction=coefficient)
         known = {name: value for name, value in self.provenance.items() if name != "support"}
         return replace(self, provenance={**known, **support_record(held)})
-
-    @property
-    def beyond_the_paper(self) -> dict[str, Varying]:
-        """What of vibrissa, clamp and contact is not the paper's, by what it is."""
-        return beyond_the_paper(self.beam, self.support)
-
-    def require_plain(self, who: str) -> None:
-        """Refuse readings of a vibrissa that is not the paper's.
-
-        Parameters
-        ----------
-        who : str
-            Who can take nothing else into account.
-
-        Raises
-        ------
-        InputError
-            If the vibrissa is curved at rest or, as the provenance has it, its clamp turns or leans
-            or the object rubs.
-        """
-        require_plain(who, self.beam, self.support)
-        self.require_sweep(who)
 
     def mirrored(self) -> "Readings":
         """The readings in a mirror, x to -x.

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from analytic.numerics.panel import NODES, POINTS, TO_SERIES, WEIGHTS, Panel
-from analytic.problem.along import Along
+from analytic.problem.along import Along, rescaled
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.unloaded import Unloaded
@@ -45,8 +45,7 @@ class RodProperties:
     def scaled(self, share: float) -> "RodProperties":
         """The form a part of the way from the uniform, straight vibrissa to this one."""
         rest = self.unloaded
-        natural = rest.natural
-        less = natural.times(share) if isinstance(natural, Along) else natural * share
+        less = rescaled(rest.natural, share)
         base = rest.tip_radius + share * (rest.base_radius - rest.tip_radius)
         less_leant = replace(rest, natural=less, base_radius=base, angle=share * rest.angle)
         w_x, w_y = self.weight

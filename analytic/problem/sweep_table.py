@@ -13,6 +13,7 @@ from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SCHEMA
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
+from analytic.problem.readings_shown import as_html, as_text, counts, draw, new_axes
 from analytic.problem.shown import Shown
 
 if TYPE_CHECKING:
@@ -126,30 +127,20 @@ class SweepTable(Shown):
             One a reading, ``force_x``, ``force_y``, ``moment_z``; in space ``force`` and
             ``moment``, each with three components.
         """
-        from analytic.problem.readings_shown import draw, new_axes
-
         axes = new_axes(self) if axes is None else axes
         draw(self, axes)
         return list(axes)
 
     def _draw(self, figure: "Figure") -> None:
-        from analytic.problem.readings_shown import new_axes
-
         self.plot(new_axes(self, figure))
 
     def _tiles(self) -> Mapping[str, object]:
-        from analytic.problem.readings_shown import counts
-
         return {"source": self.source, "stations": len(self.table), **counts(self)}
 
     def _below(self) -> str:
-        from analytic.problem.readings_shown import as_html
-
         return as_html(self)
 
     def __repr__(self) -> str:
-        from analytic.problem.readings_shown import as_text
-
         return as_text(self)
 
     def write(self, path: str | Path) -> Path:

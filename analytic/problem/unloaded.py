@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.problem.along import Along
+from analytic.problem.along import Along, sampled, values_at
 from analytic.problem.arrays import Floats
 
 _PLACES = 257  # at which the slope of one of varying curvature is looked at
@@ -41,8 +41,7 @@ class Unloaded:
 
     def curvature(self, s: Floats) -> Floats:
         """Natural curvature."""
-        natural = self.natural
-        return natural(s) if isinstance(natural, Along) else np.full_like(s, natural)
+        return values_at(self.natural, s)
 
     def taper(self, s: Floats) -> Floats:
         """By how much the radius exceeds that of the tip."""
@@ -95,12 +94,7 @@ class Unloaded:
     def _integrals(self) -> tuple[Along, Along, Along]:
         assert isinstance(self.natural, Along)
         turn = self.natural.integral()
-        name = "the vibrissa at rest"
-        x = Along.of(name, lambda s: -np.sin(turn(s)), 1.0)
-        y = Along.of(name, lambda s: np.cos(turn(s)), 1.0)
-        return _integral(x), _integral(y), turn
-
-
-def _integral(rate: float | Along) -> Along:
-    along = rate if isinstance(rate, Along) else Along((0.0, 1.0), ((rate,),))
-    return along.integral()
+        name, kinks = "the vibrissa at rest", turn.ends[1:-1]
+        x = sampled(name, lambda s: -np.sin(turn(s)), 1.0, kinks)
+        y = sampled(name, lambda s: np.cos(turn(s)), 1.0, kinks)
+        return x.integral(), y.integral(), turn

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -11,13 +12,14 @@ from scipy.interpolate import CubicHermiteSpline
 from analytic.from_clamp.calibration.unknowns import Number
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.families import circle, ellipse
-from analytic.problem.contours.profile import Profile, of_family
+from analytic.problem.contours.profile import Profile, of_curve
 
 _SMALLEST, _LARGEST = 1e-3, 30.0  # of a size, over L
 _AWAY = 30.0  # of a place, over L
 _ANGULAR, _ROUND = 6.0, 1.2  # of a superellipse's exponent: nearly a rectangle, nearly a rhombus
 _KNOTS = 7  # at which a convex contour has a radius of curvature of its own; two circles need them
 _GRID = 400  # intervals of slope angle, over which a convex contour is summed up
+_UPRIGHT = math.pi / 2
 _BESIDE = 1e-6  # rad from the axes, where a superellipse is flat or sharp
 
 
@@ -50,32 +52,47 @@ def _ellipse(numbers: Floats) -> Profile:
     return ellipse((across, upward), (x, y - upward))
 
 
-def _superellipse(numbers: Floats) -> Profile:
+class _Superellipse(NamedTuple):
     """|x/a|^n + |y/b|^n = 1, by its support function (|a sin|^q + |b cos|^q)^(1/q), q = n/(n-1)."""
-    across, upward, x, y, exponent = numbers.tolist()
-    q = exponent / (exponent - 1)
 
-    def powers(alpha: Floats) -> tuple[Floats, Floats, Floats]:
+    across: float
+    upward: float
+    x: float
+    y: float
+    q: float
+
+    def powers(self, alpha: Floats) -> tuple[Floats, Floats, Floats]:
         sine, cosine = np.abs(np.sin(alpha)), np.abs(np.cos(alpha))
-        return sine, cosine, (across * sine) ** q + (upward * cosine) ** q
+        return sine, cosine, (self.across * sine) ** self.q + (self.upward * cosine) ** self.q
 
-    def xi(alpha: Floats) -> Floats:
-        sine, _, total = powers(alpha)
-        along = np.sign(alpha) * across**q * sine ** (q - 1) * total ** (1 / q - 1)
-        return np.asarray(x + along)
+    def xi(self, alpha: Floats) -> Floats:
+        (sine, _, total), q = self.powers(alpha), self.q
+        along = np.sign(alpha) * self.across**q * sine ** (q - 1) * total ** (1 / q - 1)
+        return np.asarray(self.x + along)
 
-    def eta(alpha: Floats) -> Floats:
-        _, cosine, total = powers(alpha)
-        return np.asarray(y - upward**q * cosine ** (q - 1) * total ** (1 / q - 1))
+    def eta(self, alpha: Floats) -> Floats:
+        (_, cosine, total), q = self.powers(alpha), self.q
+        return np.asarray(self.y - self.upward**q * cosine ** (q - 1) * total ** (1 / q - 1))
 
-    def radius(alpha: Floats) -> Floats:
-        sine, cosine, total = powers(alpha)
+    def radius(self, alpha: Floats) -> Floats:
+        (sine, cosine, total), q = self.powers(alpha), self.q
         product = np.maximum(sine, _BESIDE) * np.maximum(cosine, _BESIDE)
-        scale = (q - 1) * (across * upward) ** q
+        scale = (q - 1) * (self.across * self.upward) ** q
         return np.asarray(scale * product ** (q - 2) * total ** (1 / q - 2))
 
-    edge = math.pi / 2
-    return of_family(xi, eta, (-edge, edge), radius, f"superellipse {across:g} by {upward:g}")
+
+def _superellipse(numbers: Floats) -> Profile:
+    across, upward, x, y, exponent = numbers.tolist()
+    curve = _Superellipse(across, upward, x, y, exponent / (exponent - 1))
+    return of_curve(curve, _UPRIGHT, f"superellipse {across:g} by {upward:g}")
+
+
+class _Summed(NamedTuple):
+    """Coordinates summed up from a radius of curvature."""
+
+    xi: Callable[[Floats], Floats]
+    eta: Callable[[Floats], Floats]
+    radius: Callable[[Floats], Floats]
 
 
 def convex_between(lowest: float, highest: float) -> Family:
@@ -102,7 +119,7 @@ def convex_between(lowest: float, highest: float) -> Family:
             return CubicHermiteSpline(grid, along + at - begin, ends)
 
         x, y = summed(float(numbers[0]), np.cos), summed(float(numbers[1]), np.sin)
-        return of_family(x, y, (-math.pi / 2, math.pi / 2), curve, "convex contour")
+        return of_curve(_Summed(x, y, curve), _UPRIGHT, "convex contour")
 
     def start(simpler: Floats) -> Floats:
         known = _ellipse(simpler) if len(simpler) > 3 else _circle(simpler)

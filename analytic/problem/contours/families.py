@@ -1,15 +1,16 @@
-"""Families of convex contours with closed forms by slope angle."""
+"""Families of convex contours, closed forms by slope angle; what cannot be is an `InputError`."""
 
 import math
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.profile import Profile, of_family
+from analytic.problem.contours.profile import Profile, of_curve
 from analytic.problem.numbers import finite, pair, positive
 
-_STEEPEST = math.pi / 2 - 1e-3  # the graph of a function of x never stands upright
+_UPRIGHT = math.pi / 2
+_STEEPEST = _UPRIGHT - 1e-3  # the graph of a function of x never stands upright
 
 
 def catenary(a: float, c: float) -> Profile:
@@ -26,20 +27,9 @@ def catenary(a: float, c: float) -> Profile:
     -------
     Profile
         For slope angles up to 1e-3 rad from the vertical.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
     a, c = positive("profile catenary.a", a), finite("profile catenary.c", c)
-    return of_family(
-        xi=partial(_catenary_xi, a),
-        eta=partial(_catenary_eta, a, c),
-        alpha_range=(-_STEEPEST, _STEEPEST),
-        radius_of_curvature=partial(_catenary_radius, a),
-        label=f"catenary cosh({a:g} x) {c:+g}",
-    )
+    return of_curve(_Catenary(a, c), _STEEPEST, f"catenary cosh({a:g} x) {c:+g}")
 
 
 def parabola(a: float, c: float) -> Profile:
@@ -56,20 +46,9 @@ def parabola(a: float, c: float) -> Profile:
     -------
     Profile
         For slope angles up to 1e-3 rad from the vertical.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
     a, c = positive("profile parabola.a", a), finite("profile parabola.c", c)
-    return of_family(
-        xi=partial(_parabola_xi, a),
-        eta=partial(_parabola_eta, a, c),
-        alpha_range=(-_STEEPEST, _STEEPEST),
-        radius_of_curvature=partial(_parabola_radius, a),
-        label=f"parabola {a:g} x^2 {c:+g}",
-    )
+    return of_curve(_Parabola(a, c), _STEEPEST, f"parabola {a:g} x^2 {c:+g}")
 
 
 def circle(radius: float, lowest: tuple[float, float]) -> Profile:
@@ -86,15 +65,10 @@ def circle(radius: float, lowest: tuple[float, float]) -> Profile:
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
     radius = positive("profile circle.radius", radius)
     point = pair("profile circle.lowest", lowest)
-    return _ellipse(radius, radius, point, f"circle of radius {radius:g}")
+    return _ellipse(radius, radius, *point, f"circle of radius {radius:g}")
 
 
 def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Profile:
@@ -111,17 +85,12 @@ def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Prof
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
     across, upward = pair("profile ellipse.semi_axes", semi_axes)
     positive("profile ellipse.semi_axes[0]", across)
     positive("profile ellipse.semi_axes[1]", upward)
     point = pair("profile ellipse.lowest", lowest)
-    return _ellipse(across, upward, point, f"ellipse {across:g} by {upward:g}")
+    return _ellipse(across, upward, *point, f"ellipse {across:g} by {upward:g}")
 
 
 def two_circles(
@@ -142,91 +111,84 @@ def two_circles(
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be.
     """
     right = positive("profile two_circles.right_radius", right_radius)
     left = positive("profile two_circles.left_radius", left_radius)
     x, y = pair("profile two_circles.lowest", lowest)
-    return of_family(
-        xi=partial(_two_circles_xi, right, left, x),
-        eta=partial(_two_circles_eta, right, left, y),
-        alpha_range=(-math.pi / 2, math.pi / 2),
-        radius_of_curvature=partial(_two_circles_radius, right, left),
-        kinks=(0.0,),
-        label=f"two circles of radius {left:g} and {right:g}",
-    )
+    label = f"two circles of radius {left:g} and {right:g}"
+    return of_curve(_TwoCircles(right, left, x, y), _UPRIGHT, label, kinks=(0.0,))
 
 
-def _catenary_xi(a: float, alpha: Floats) -> Floats:
-    return np.arcsinh(np.tan(alpha) / a) / a
+def _ellipse(across: float, upward: float, x: float, y: float, label: str) -> Profile:
+    curve = _Ellipse(across, upward, x, y)
+    return of_curve(curve, _UPRIGHT, f"{label}, lowest point ({x:g}, {y:g})")
 
 
-def _catenary_eta(a: float, c: float, alpha: Floats) -> Floats:
-    return np.hypot(1.0, np.tan(alpha) / a) + c
+class _Catenary(NamedTuple):
+    a: float
+    c: float
+
+    def xi(self, alpha: Floats) -> Floats:
+        return np.arcsinh(np.tan(alpha) / self.a) / self.a
+
+    def eta(self, alpha: Floats) -> Floats:
+        return np.hypot(1.0, np.tan(alpha) / self.a) + self.c
+
+    def radius(self, alpha: Floats) -> Floats:
+        cosine = np.cos(alpha)
+        return 1 / (cosine * cosine * cosine * self.a * np.hypot(self.a, np.tan(alpha)))
 
 
-def _catenary_radius(a: float, alpha: Floats) -> Floats:
-    cosine = np.cos(alpha)
-    return 1 / (cosine * cosine * cosine * a * np.hypot(a, np.tan(alpha)))
+class _Parabola(NamedTuple):
+    a: float
+    c: float
+
+    def xi(self, alpha: Floats) -> Floats:
+        return np.tan(alpha) / (2 * self.a)
+
+    def eta(self, alpha: Floats) -> Floats:
+        return np.tan(alpha) ** 2 / (4 * self.a) + self.c
+
+    def radius(self, alpha: Floats) -> Floats:
+        cosine = np.cos(alpha)
+        return 1 / (2 * self.a * cosine * cosine * cosine)
 
 
-def _parabola_xi(a: float, alpha: Floats) -> Floats:
-    return np.tan(alpha) / (2 * a)
+class _Ellipse(NamedTuple):
+    across: float
+    upward: float
+    x: float
+    y: float
+
+    def support(self, alpha: Floats) -> Floats:
+        """Distance of the tangent at `alpha` from the centre."""
+        return np.hypot(self.across * np.sin(alpha), self.upward * np.cos(alpha))
+
+    def xi(self, alpha: Floats) -> Floats:
+        return self.x + self.across * (self.across * np.sin(alpha) / self.support(alpha))
+
+    def eta(self, alpha: Floats) -> Floats:
+        """Y + b - b^2 cos(alpha)/h, with b - b^2 cos(alpha)/h free of cancellation at alpha = 0."""
+        support = self.support(alpha)
+        rise = (self.across * np.sin(alpha)) ** 2 / (support + self.upward * np.cos(alpha))
+        return self.y + self.upward * rise / support
+
+    def radius(self, alpha: Floats) -> Floats:
+        support = self.support(alpha)
+        return np.square(self.across / support) * np.square(self.upward / support) * support
 
 
-def _parabola_eta(a: float, c: float, alpha: Floats) -> Floats:
-    return np.tan(alpha) ** 2 / (4 * a) + c
+class _TwoCircles(NamedTuple):
+    right: float
+    left: float
+    x: float
+    y: float
 
+    def radius(self, alpha: Floats) -> Floats:
+        return self.left + (self.right - self.left) * (alpha > 0).astype(float)
 
-def _parabola_radius(a: float, alpha: Floats) -> Floats:
-    cosine = np.cos(alpha)
-    return 1 / (2 * a * cosine * cosine * cosine)
+    def xi(self, alpha: Floats) -> Floats:
+        return self.x + self.radius(alpha) * np.sin(alpha)
 
-
-def _ellipse(across: float, upward: float, lowest: tuple[float, float], label: str) -> Profile:
-    x, y = lowest
-    return of_family(
-        xi=partial(_ellipse_xi, across, upward, x),
-        eta=partial(_ellipse_eta, across, upward, y),
-        alpha_range=(-math.pi / 2, math.pi / 2),
-        radius_of_curvature=partial(_ellipse_radius, across, upward),
-        label=f"{label}, lowest point ({x:g}, {y:g})",
-    )
-
-
-def _ellipse_support(across: float, upward: float, alpha: Floats) -> Floats:
-    """Distance of the tangent at `alpha` from the centre."""
-    return np.hypot(across * np.sin(alpha), upward * np.cos(alpha))
-
-
-def _ellipse_xi(across: float, upward: float, x: float, alpha: Floats) -> Floats:
-    return x + across * (across * np.sin(alpha) / _ellipse_support(across, upward, alpha))
-
-
-def _ellipse_eta(across: float, upward: float, y: float, alpha: Floats) -> Floats:
-    """Y + b - b^2 cos(alpha)/h, with b - b^2 cos(alpha)/h free of cancellation near alpha = 0."""
-    support = _ellipse_support(across, upward, alpha)
-    rise = (across * np.sin(alpha)) ** 2 / (support + upward * np.cos(alpha))
-    return y + upward * rise / support
-
-
-def _ellipse_radius(across: float, upward: float, alpha: Floats) -> Floats:
-    support = _ellipse_support(across, upward, alpha)
-    return np.square(across / support) * np.square(upward / support) * support
-
-
-def _two_circles_radius(right: float, left: float, alpha: Floats) -> Floats:
-    on_right = (alpha > 0).astype(float)
-    return left + (right - left) * on_right
-
-
-def _two_circles_xi(right: float, left: float, x: float, alpha: Floats) -> Floats:
-    return x + _two_circles_radius(right, left, alpha) * np.sin(alpha)
-
-
-def _two_circles_eta(right: float, left: float, y: float, alpha: Floats) -> Floats:
-    return y + _two_circles_radius(right, left, alpha) * 2 * np.square(np.sin(alpha / 2))
+    def eta(self, alpha: Floats) -> Floats:
+        return self.y + self.radius(alpha) * 2 * np.square(np.sin(alpha / 2))

@@ -76,7 +76,9 @@ class Contours:
 def _parts(value: Any) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:  # noqa: ANN401
     """What makes a profile, or a part of one, and of what; None of what is taken as it is."""
     match value:
-        case tuple() if type(value) is tuple:  # a named one has more than its parts
+        case tuple() if type(value).__module__ in _FAMILIES:
+            return type(value), value
+        case tuple() if type(value) is tuple:
             return _tuple, value
         case Profile() if value.radius_of_curvature is not None:
             return _profile, tuple(getattr(value, name) for name in _CURVES)

@@ -38,7 +38,9 @@ class Polygon(Contour):
     def at(self, t: Floats) -> ContourPoint:
         """Points at parameters `t`, shape (n,)."""
         t = np.asarray(t, dtype=float)
-        piece = np.clip(np.searchsorted(self._starts, t, side="right") - 1, 0, self._last)
+        piece = np.clip(
+            np.searchsorted(self._starts, t, side="right") - 1, 0, len(self._starts) - 2
+        )
         along = t - self._starts[piece]
         on_edge = piece % 2 == 1  # pieces take turns: vertex, edge, vertex, ...
         vertex = piece // 2
@@ -113,10 +115,6 @@ class Polygon(Contour):
         lengths[1::2] = np.hypot(*np.diff(self.vertices, axis=0).T)
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
-    @property
-    def _last(self) -> int:
-        return len(self._starts) - 2
-
 
 def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
     """The lower side of a convex polygon, exact to the last vertex.
@@ -154,15 +152,12 @@ def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
     turn = np.arctan2(cross, (before * edges).sum(axis=1))
     if turn.sum() < -np.pi:  # a multiple of 2 pi; of a figure of eight it is zero
         return polygon(vertices[::-1], label)
-    around, in_order = (
-        float(np.rad2deg(turn.sum())),
-        "it crosses itself: give the vertices in order",
-    )
+    around = float(np.rad2deg(turn.sum()))
+    in_order = "it crosses itself: give the vertices in order"
     if np.abs(turn).max() > np.pi - 1e-9:
         where, remedy = _vertex(vertices, np.argmax(np.abs(turn))), "order them, or make it thicker"
-        raise InputError(
-            where, "folded back on itself", "a corner that is not all but flat", remedy
-        )
+        allowed = "a corner that is not all but flat"
+        raise InputError(where, "folded back on itself", allowed, remedy)
     if around < 180:
         raise InputError("polygon", f"turning by {around:.4g} deg", "convex, 360 deg", in_order)
     if turn.min() < -_STRAIGHT:

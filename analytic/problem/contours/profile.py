@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -175,22 +175,28 @@ class Profile(Contour):
         return np.asarray(np.take_along_axis(slopes, best[None], axis=0)[0])
 
 
-def of_family(
-    xi: Coordinate,
-    eta: Coordinate,
-    alpha_range: tuple[float, float],
-    radius_of_curvature: Coordinate,
-    label: str,
-    kinks: tuple[float, ...] = (),
-) -> Profile:
-    """A contour of a family whose closed form is known to be convex: it is not searched for waves.
+class Curve(Protocol):
+    """A closed form by slope angle that is known to be convex."""
 
-    What rounding hides is refused all the same, in a fifth of the time.
+    def xi(self, alpha: Floats) -> Floats:
+        """Coordinates along x."""
+
+    def eta(self, alpha: Floats) -> Floats:
+        """Coordinates along y."""
+
+    def radius(self, alpha: Floats) -> Floats:
+        """Radii of curvature."""
+
+
+def of_curve(curve: Curve, steepest: float, label: str, kinks: tuple[float, ...] = ()) -> Profile:
+    """A contour up to a slope angle on either side.
+
+    It is not searched for waves. What rounding hides is refused all the same, in a fifth of the
+    time.
     """
-    check_convex(xi, eta, alpha_range, radius_of_curvature, label, known=True)
-    names = tuple(part.name for part in fields(Profile))
-    parts = (xi, eta, alpha_range, radius_of_curvature, label, kinks)
-    return unchecked(Profile, names, *parts)
+    parts = curve.xi, curve.eta, (-steepest, steepest), curve.radius, label
+    check_convex(*parts, known=True)
+    return unchecked(Profile, tuple(part.name for part in fields(Profile)), *parts, kinks)
 
 
 def unchecked(kind: type[_Kind], names: Sequence[str], *parts: object) -> _Kind:

@@ -1,6 +1,5 @@
 """A smooth convex contour through given points, made of circular arcs."""
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +18,22 @@ class _Arcs(NamedTuple):
     centre_x: Floats
     centre_y: Floats
     radius: Floats
+
+    def xi(self, alpha: Floats) -> Floats:
+        i = self.on(alpha)
+        return self.centre_x[i] + self.radius[i] * np.sin(alpha)
+
+    def eta(self, alpha: Floats) -> Floats:
+        i = self.on(alpha)
+        return self.centre_y[i] - self.radius[i] * np.cos(alpha)
+
+    def radius_at(self, alpha: Floats) -> Floats:
+        return self.radius[self.on(alpha)]
+
+    def on(self, alpha: Floats) -> Integers:
+        """The arcs on which slope angles are."""
+        last = len(self.radius) - 1
+        return np.clip(np.searchsorted(self.begin, alpha, side="right") - 1, 0, last)
 
 
 def through_points(points: ArrayLike, label: str = "curve through points") -> Profile:
@@ -69,10 +84,10 @@ def through_points(points: ArrayLike, label: str = "curve through points") -> Pr
     arcs = _biarcs(at, chord, _tangents(np.hypot(run, rise), chord))
     end = float(arcs.begin[-1]), float(arcs.begin[0])
     return Profile(
-        xi=partial(_arcs_xi, arcs),
-        eta=partial(_arcs_eta, arcs),
+        xi=arcs.xi,
+        eta=arcs.eta,
         alpha_range=(end[1], end[0]),
-        radius_of_curvature=partial(_arcs_radius, arcs),
+        radius_of_curvature=arcs.radius_at,
         kinks=tuple(arcs.begin[1:-1].tolist()),
         label=label,
     )
@@ -116,22 +131,3 @@ def _biarcs(at: Floats, chord: Floats, tangent: Floats) -> _Arcs:
 def _turn(radius: Floats, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
     """The way along an arc."""
     return radius * (np.sin(end) - np.sin(begin)), radius * (np.cos(begin) - np.cos(end))
-
-
-def _on(arcs: _Arcs, alpha: Floats) -> Integers:
-    last = len(arcs.radius) - 1
-    return np.clip(np.searchsorted(arcs.begin, alpha, side="right") - 1, 0, last)
-
-
-def _arcs_xi(arcs: _Arcs, alpha: Floats) -> Floats:
-    i = _on(arcs, alpha)
-    return arcs.centre_x[i] + arcs.radius[i] * np.sin(alpha)
-
-
-def _arcs_eta(arcs: _Arcs, alpha: Floats) -> Floats:
-    i = _on(arcs, alpha)
-    return arcs.centre_y[i] - arcs.radius[i] * np.cos(alpha)
-
-
-def _arcs_radius(arcs: _Arcs, alpha: Floats) -> Floats:
-    return arcs.radius[_on(arcs, alpha)]

