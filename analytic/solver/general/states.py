@@ -328,21 +328,10 @@ def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> State
     return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
-class StateRates(NamedTuple):
-    """Derivatives of what a state misses and where it is, each of shape (n, 3).
-
-    By the contour parameter t, the normal force and the excess.
-    """
-
-    slope_residual: Floats
-    height_residual: Floats  # of the height of the span's end over the contour's point
-    foot_x: Floats
-
-
 def with_rates(
     point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa
-) -> tuple[States, StateRates]:
-    """`states` and their derivatives.
+) -> tuple[States, Floats]:
+    """`states`, and the derivatives of residuals and foot by t, force and excess, shape (n, 3, 3).
 
     The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
     and one-sided at a contour's breaks; the other two are differences that do not change the phase.
@@ -378,19 +367,16 @@ def with_rates(
         offset_point = found.offset_point
         up = up - (offset_point.eta - point.eta)
         reach = reach - (offset_point.xi - point.xi)
-    rates = np.empty((3, len(force), 3))
-    rates[..., 0] = by_t
     changes = _WEIGHTS @ np.array([found.angle, up, -reach])
-    rates[..., 1], rates[..., 2] = changes[:, 0] / step_f, changes[:, 1] / step_w
-    return here, StateRates(*rates)
+    by_force, by_excess = changes[:, 0] / step_f, changes[:, 1] / step_w
+    return here, np.stack([np.stack(by_t, axis=1), by_force.T, by_excess.T], axis=2)
 
 
 def rates_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> tuple[States, Floats]:
     """`states_at`, and the derivatives of what they miss by the same numbers, shape (n, k, k)."""
     if not isinstance(contour, Contour):
         return contour.rates(z, vibrissa)
-    here, rates = with_rates(contour.at(z[:, 0]), z[:, 1].copy(), z[:, 2].copy(), vibrissa)
-    return here, np.stack(rates, axis=1)
+    return with_rates(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
 def misses(found: States, pose: Pose) -> Floats:
