@@ -300,22 +300,9 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     else:
         start = vibrissa.back_to_clamp(slope, couple - beyond, push, length, direction)
         moment = -start.kappa
-    sin, cos = np.sin(direction), np.cos(direction)
-    sin_half, cos_half = np.sin(direction / 2), np.cos(direction / 2)
-    turned = np.arctan2(
-        start.p * cos_half - start.g * sin_half, start.g * cos_half + start.p * sin_half
-    )
-    return States(
-        point,
-        force,
-        excess,
-        moment,
-        start.along * sin + start.across * cos,
-        start.along * cos - start.across * sin,
-        vibrissa.compliance * moment - 2 * turned,
-        start.amplitude,
-        vibrissa,
-    )
+    reach, up = start.way(direction)
+    angle = vibrissa.compliance * moment - 2 * start.angle_from(direction / 2)
+    return States(point, force, excess, moment, up, reach, angle, start.amplitude, vibrissa)
 
 
 def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> States:
