@@ -10,7 +10,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair
 from analytic.problem.support import Support, check_support
 from analytic.problem.table import as_table
@@ -19,6 +19,7 @@ from analytic.solver.equilibria import equilibria
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.contacts import contacts
 from analytic.solver.general.states import Vibrissa
+from analytic.solver.given import given_contour
 from analytic.solver.residuals import without_inexact
 
 _AT_ONCE = 4096  # contacts: their intermediate results stay in the processor's cache
@@ -72,8 +73,7 @@ def solve_contact(
         If an angle is not within [-pi/2, pi/2], or a number is out of range.
     """
     beam = Beam() if beam is None else beam
-    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
-    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    contour = given_contour(profile, beam)
     held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam, signed=True)
     try:
@@ -84,7 +84,6 @@ def solve_contact(
     if outside.any():
         what, allowed = f"{angles[outside][0]} rad", "between -pi/2 and pi/2 rad"
         raise InputError("alpha", what, allowed, "they are slope angles of the lower side")
-    contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = contour.parameter(angles)
     vibrissa, units = Vibrissa.of(beam, held), Units.of(beam)
     if vibrissa.is_plain:

@@ -5,7 +5,7 @@ Will, Steigenberger and Behn, section 4.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,6 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
-from analytic.problem.errors import require
 from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
@@ -35,6 +34,7 @@ from analytic.solver.general.chain import (
 )
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import Vibrissa
+from analytic.solver.given import given_contour
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
 
@@ -160,16 +160,12 @@ def find_events(
         If the equilibria of such a vibrissa cannot be followed to where it snaps off.
     """
     beam = Beam() if beam is None else beam
-    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
-    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    contour = given_contour(profile, beam)
     held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam)
-    contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
-    reach = contact_range(contour)
-    if not is_plain(beam, held):
-        vibrissa = Vibrissa.of(beam, held)
-        return _general_events(contour, reach, vibrissa, beam)
-    return _plain_events([contour], [reach], [beam])[0]
+    if is_plain(beam, held):
+        return find_many_events([profile], [beam])[0]
+    return _general_events(contour, Vibrissa.of(beam, held), beam)
 
 
 def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list[Events]:
@@ -192,33 +188,19 @@ def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list
     InputError
         If one vibrissa cannot reach its contour, is curved at rest or not uniform.
     """
-    for profile, beam in zip(profiles, beams, strict=True):
-        require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
-        require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    contours = [given_contour(*one) for one in zip(profiles, beams, strict=True)]
+    for beam in beams:
         require_plain("the events of many", beam)
     if not beams:
         return []
-    contours = [
-        profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-        for profile, beam in zip(profiles, beams, strict=True)
-    ]
-    return _plain_events(contours, [contact_range(one) for one in contours], beams)
-
-
-_AMID = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
-"""What happens under load."""
-
-
-def _plain_events(
-    contours: Sequence[Contour], reaches: Sequence[tuple[float, float]], beams: Sequence[Beam]
-) -> list[Events]:
+    reaches = [contact_range(one) for one in contours]
     many = Contours(contours)
     branches = trace(many, reaches)
     places = [
         (i, name, branch.t[at])
         for i, branch in enumerate(branches)
         for name, at in branch.events().items()
-        if name in _AMID and at
+        if at  # not at first contact, which has no load
     ]
     owner, t = np.array([i for i, _, _ in places]), np.array([t for _, _, t in places])
     rows = _rows(_plain_columns(equilibria_at(many.at(owner, t)), beams, owner))
@@ -245,9 +227,8 @@ def _plain_events(
     return events
 
 
-def _general_events(
-    contour: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
-) -> Events:
+def _general_events(contour: Contour, vibrissa: Vibrissa, beam: Beam) -> Events:
+    reach = contact_range(contour)
     touch = first_touch(contour, reach, vibrissa.at_rest.shape)
     poses = along_x(vibrissa.clamp_angle)
     path = follow(contour, vibrissa, touch, reach, poses)
@@ -256,7 +237,8 @@ def _general_events(
         raise ArithmeticError(f"the equilibria along {contour.label} are lost {place}")
     paths = with_second_contacts((contour,), path, poses)
     path, units = joined(paths), Units.of(beam)
-    found = {}
+    found: dict[str, Event | None] = {field.name: None for field in fields(Events)}
+    found["contact_length_minimum"] = _nowhere()
     for name, i in {**path.events(), **second_contacts(paths)}.items():
         if i is None:
             continue
@@ -269,18 +251,7 @@ def _general_events(
             columns = without(without_inexact(columns, vibrissa, units), wrong, "touches again")
             columns["foot_x"] = foot_x
         found[name] = _rows({column: columns[column] for column in COLUMNS})[0]
-    return Events(
-        found["first_contact"],
-        found.get("phase_b_start"),
-        found.get("phase_b_end"),
-        found.get("contact_length_minimum", _nowhere()),
-        None,
-        found["snap_off"],
-        found.get("back_start"),
-        found.get("back_end"),
-        found.get("second_contact_start"),
-        found.get("second_contact_end"),
-    )
+    return Events(**found)  # type: ignore[arg-type]  # what is always there is never None
 
 
 def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]]) -> Floats:

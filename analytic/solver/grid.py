@@ -48,9 +48,7 @@ class Grid(NamedTuple):
 
     def with_points(self, owner: Integers, t: Floats) -> "Grid":
         """The grid with more points, each once."""
-        whose, where = np.concatenate([self.owner, owner]), np.concatenate([self.t, t])
-        order = _order(whose, where)
-        return Grid(whose[order], where[order])
+        return _merged(self, (), Grid(owner, t), ())[0]
 
     @property
     def cells(self) -> Booleans:
@@ -180,7 +178,8 @@ def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
         new = _allowed(grid, chosen, most)
         if not new.t.size:
             break
-        grid, samples = _more(contours, grid, samples, new)
+        grid, values = _merged(grid, tuple(samples), new, tuple(_sample(contours, new)))
+        samples = Samples(*values)
     folds, beside, found = _folds(contours, grid, samples)
     if folds.t.size:
         grid, values = _merged(grid, tuple(samples), beside, tuple(found))
@@ -294,13 +293,6 @@ def _sampled(point: ContourPoint) -> Samples:
         in_b, in_a = states.tangent_rate(), states.tip_rate()
         rate = np.where(states.tangent, in_b, in_a.foot_x)
         return Samples(states.foot_x, rate, states.tip_rotation, in_b, *in_a)
-
-
-def _more(contours: Contours, grid: Grid, samples: Samples, new: Grid) -> tuple[Grid, Samples]:
-    if not new.t.size:
-        return grid, samples
-    grid, values = _merged(grid, tuple(samples), new, tuple(_sample(contours, new)))
-    return grid, Samples(*values)
 
 
 def _merged(

@@ -122,10 +122,8 @@ def _of_two(
         direction = np.arctan2(-force_x, force_y)
         force = np.hypot(force_x, force_y)
         end = back_to_clamp(slope - direction, moment - natural, force, length)
-        sin, cos = np.sin(direction), np.cos(direction)
         phi = direction + np.pi / 2 - 2 * np.arctan2(end.p, end.g)
-        x, y = end.along * cos - end.across * sin, end.along * sin + end.across * cos
-        return Reached(x, y, phi, -end.kappa - natural)
+        return Reached(*end.way(direction), phi, -end.kappa - natural)
 
     read = dimensionless(columns, two, *map(float, units))
     mu, radius = float(vibrissa.friction), float(vibrissa.radius)

@@ -19,16 +19,18 @@ as for every imperfect column of the same kind.
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.roots import zeros
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError
 from analytic.problem.reach import contact_range
 from analytic.problem.support import require_plain
 from analytic.solver.elastica import Span, frame, span
+from analytic.solver.given import given_contour
 
 _GRID = 801  # contour points to find the fold between; it is then exact
-_HALVINGS = 60  # of the tip's rotation: to rounding
+_LEAST = 1e-18  # rad; less than any rotation of a tip that is loaded
 _LARGEST = 0.5  # rad
 
 
@@ -59,10 +61,8 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     if not 0 < abs(tilt) <= _LARGEST:
         raise InputError("tilt", f"{tilt} rad", f"up to {_LARGEST} rad, not zero", "it is in rad")
     beam = Beam() if beam is None else beam
-    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
-    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    contour = given_contour(profile, beam)
     require_plain("the slip-off", beam)
-    contour = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
     first = contact_range(contour)[1]
     lowest = float(contour.parameter(np.zeros(1))[0])
     grid = lowest + (first - lowest) * np.linspace(1, 0, _GRID) ** 2  # dense where the fold is
@@ -87,24 +87,23 @@ def _foot_x(contour: Contour, t: Floats, tilt: float) -> Floats:
     lean = np.arccos(np.cos(alpha) * np.cos(tilt))
     sunk = np.cos(alpha) * np.sin(tilt) ** 2 / np.sin(lean)
 
-    def rise(loaded: Span) -> Floats:
+    def rise(which: Integers | slice, loaded: Span) -> Floats:
         """The contact's height, times sqrt(f)."""
-        up, across = frame(loaded, lean)
-        return np.asarray(up * np.cos(tilt) - across * sunk)
+        up, across = frame(loaded, lean[which])
+        return np.asarray(up * np.cos(tilt) - across * sunk[which])
+
+    def too_high(which: Integers, rotation: Floats) -> Floats:
+        loaded = span(rotation, lean[which])
+        return rise(which, loaded) - eta[which] * loaded.q
 
     # Tangential contact if that fits on the vibrissa, else the rotation at which the tip is there.
     high = np.pi / 2 - lean
     tangential = span(high, lean)
-    root_f = rise(tangential) / eta
+    root_f = rise(slice(None), tangential) / eta
     tip = tangential.q > root_f
-    low = np.zeros_like(high)
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        loaded = span(middle, lean)
-        above = rise(loaded) > eta * loaded.q
-        low, high = np.where(above, middle, low), np.where(above, high, middle)
-    at_tip = span(high, lean)
-    reached = ~tip | (low > 0)
+    low = np.full_like(high, _LEAST)
+    reached = ~tip | (too_high(np.arange(low.size), low) > 0)
+    at_tip = span(zeros(too_high, low, high), lean)
     loaded = Span(*(np.where(tip, a, b) for a, b in zip(at_tip, tangential, strict=True)))
     reach = frame(loaded, lean).across / np.where(tip, loaded.q, root_f)
     return np.where(reached, xi - reach * np.sin(alpha) / np.sin(lean), np.nan)

@@ -88,7 +88,6 @@ def _balanced(point: ContourPoint, vibrissa: Vibrissa, start: Floats) -> tuple[F
         return np.stack([found.slope_residual, found.height_residual], axis=1)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        _, rates = with_rates(take(point, which), z[:, 0], z[:, 1], vibrissa)
-        return np.stack([rates.slope_residual, rates.height_residual], axis=1)[:, :, 1:]
+        return with_rates(take(point, which), z[:, 0], z[:, 1], vibrissa)[1][:, :2, 1:]
 
     return solve(misses, jacobian, start)

@@ -93,7 +93,9 @@ def places(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
     numbers = contact.point.alpha, contact.force, contact.excess
     given = np.array([*numbers, inner.point.alpha, inner.force, apart])
     beyond = _outer(given, vibrissa, apart * along)
-    first = _inner(given, vibrissa, _outer(given, vibrissa, apart).kappa, (begin - apart) * along)
+    first = _inner(
+        given, vibrissa, _outer(given, vibrissa, apart).start.kappa, (begin - apart) * along
+    )
     return (
         np.concatenate([begin - apart * along, (begin - apart) * (1 - along)]),
         np.concatenate([contact.point.xi - beyond.x, inner.point.xi - first.x]),
@@ -106,7 +108,6 @@ class _Part(NamedTuple):
 
     start: Start
     direction: Floats  # slope angle of its force
-    kappa: Floats  # curvature where it begins
     gained: Floats  # less that curvature
     x: Floats
     y: Floats  # of the contact from there
@@ -135,33 +136,25 @@ def _inner(given: Floats, vibrissa: Vibrissa, kappa: Floats, length: Floats) -> 
 def _part(slope: Floats, kappa: Floats, force: Floats, direction: Floats, length: Floats) -> _Part:
     slope, kappa, force, length = np.broadcast_arrays(slope, kappa, force, length)
     start = back_to_clamp(slope, kappa, force, length)
-    sin, cos = np.sin(direction), np.cos(direction)
-    x, y = start.along * cos - start.across * sin, start.along * sin + start.across * cos
-    return _Part(start, direction, start.kappa, force * start.along - kappa, x, y)
+    return _Part(start, direction, force * start.along - kappa, *start.way(direction))
 
 
 def _bent(given: Floats, vibrissa: Vibrissa) -> _Bent:
     _, _, excess, inner_alpha, _, apart = given
     beyond = _outer(given, vibrissa, apart)
     due = np.pi / 4 - (inner_alpha - beyond.direction) / 2
-    first = _inner(given, vibrissa, beyond.kappa, vibrissa.arc_length(excess) - apart)
+    first = _inner(given, vibrissa, beyond.start.kappa, vibrissa.arc_length(excess) - apart)
     moment = vibrissa.natural_curvature + first.gained
     return _Bent(
-        vibrissa.compliance * moment - 2 * _angle(first.start, first.direction / 2),
+        vibrissa.compliance * moment - 2 * first.start.angle_from(first.direction / 2),
         first.y + beyond.y,
         first.x + beyond.x,
-        2 * _angle(beyond.start, due),
+        2 * beyond.start.angle_from(due),
         beyond.x,
         beyond.y,
         moment,
         np.maximum(first.start.amplitude, beyond.start.amplitude),
     )
-
-
-def _angle(start: Start, due: Floats) -> Floats:
-    """The angle chi where a span begins, from another one [rad]."""
-    sin, cos = np.sin(due), np.cos(due)
-    return np.arctan2(start.p * cos - start.g * sin, start.g * cos + start.p * sin)
 
 
 def _found(

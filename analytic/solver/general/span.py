@@ -35,6 +35,16 @@ class Start(NamedTuple):
     across: Floats  # integrals of cos(theta) and sin(theta) from the clamp to the contact
     amplitude: Floats  # amplitude of the span: pi at half a period [rad]
 
+    def way(self, direction: Floats) -> tuple[Floats, Floats]:
+        """From the clamp to the contact along x and y, the force at a slope angle."""
+        sin, cos = np.sin(direction), np.cos(direction)
+        return self.along * cos - self.across * sin, self.along * sin + self.across * cos
+
+    def angle_from(self, due: Floats) -> Floats:
+        """The angle chi at the clamp, from another one [rad]."""
+        sin, cos = np.sin(due), np.cos(due)
+        return np.asarray(np.arctan2(self.p * cos - self.g * sin, self.g * cos + self.p * sin))
+
 
 def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:
     """March from the contact back to the clamp."""

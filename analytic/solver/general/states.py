@@ -300,22 +300,9 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     else:
         start = vibrissa.back_to_clamp(slope, couple - beyond, push, length, direction)
         moment = -start.kappa
-    sin, cos = np.sin(direction), np.cos(direction)
-    sin_half, cos_half = np.sin(direction / 2), np.cos(direction / 2)
-    turned = np.arctan2(
-        start.p * cos_half - start.g * sin_half, start.g * cos_half + start.p * sin_half
-    )
-    return States(
-        point,
-        force,
-        excess,
-        moment,
-        start.along * sin + start.across * cos,
-        start.along * cos - start.across * sin,
-        vibrissa.compliance * moment - 2 * turned,
-        start.amplitude,
-        vibrissa,
-    )
+    reach, up = start.way(direction)
+    angle = vibrissa.compliance * moment - 2 * start.angle_from(direction / 2)
+    return States(point, force, excess, moment, up, reach, angle, start.amplitude, vibrissa)
 
 
 def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> States:
@@ -328,21 +315,10 @@ def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> State
     return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
-class StateRates(NamedTuple):
-    """Derivatives of what a state misses and where it is, each of shape (n, 3).
-
-    By the contour parameter t, the normal force and the excess.
-    """
-
-    slope_residual: Floats
-    height_residual: Floats  # of the height of the span's end over the contour's point
-    foot_x: Floats
-
-
 def with_rates(
     point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa
-) -> tuple[States, StateRates]:
-    """`states` and their derivatives.
+) -> tuple[States, Floats]:
+    """`states`, and the derivatives of residuals and foot by t, force and excess, shape (n, 3, 3).
 
     The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
     and one-sided at a contour's breaks; the other two are differences that do not change the phase.
@@ -378,19 +354,16 @@ def with_rates(
         offset_point = found.offset_point
         up = up - (offset_point.eta - point.eta)
         reach = reach - (offset_point.xi - point.xi)
-    rates = np.empty((3, len(force), 3))
-    rates[..., 0] = by_t
     changes = _WEIGHTS @ np.array([found.angle, up, -reach])
-    rates[..., 1], rates[..., 2] = changes[:, 0] / step_f, changes[:, 1] / step_w
-    return here, StateRates(*rates)
+    by_force, by_excess = changes[:, 0] / step_f, changes[:, 1] / step_w
+    return here, np.stack([np.stack(by_t, axis=1), by_force.T, by_excess.T], axis=2)
 
 
 def rates_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> tuple[States, Floats]:
     """`states_at`, and the derivatives of what they miss by the same numbers, shape (n, k, k)."""
     if not isinstance(contour, Contour):
         return contour.rates(z, vibrissa)
-    here, rates = with_rates(contour.at(z[:, 0]), z[:, 1].copy(), z[:, 2].copy(), vibrissa)
-    return here, np.stack(rates, axis=1)
+    return with_rates(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
 def misses(found: States, pose: Pose) -> Floats:

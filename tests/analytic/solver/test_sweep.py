@@ -20,7 +20,6 @@ from analytic import (
     find_events,
     named_case,
     parabola,
-    reconstruct,
     solve_contact,
     solve_sweep,
     two_circles,
@@ -71,16 +70,6 @@ def test_phases_follow_each_other(case_name, exact):
     order = phase[phase != phase.shift()].tolist()
     middle = ["tip"] if case_name == "tip-only" else ["tip", "tangent", "tip"]
     assert order == ["free", *middle, "free"]
-
-
-def test_reconstruction_is_exact(exact):
-    found, table = reconstruct(exact), exact.table
-    assert (found["phase"] == table["phase"]).all()
-    error = np.hypot(
-        found["contact_x"] - table["contact_x"], found["contact_y"] - table["contact_y"]
-    )
-    assert error.max() < 1e-13
-    assert np.abs(found["contact_arc_length"] - table["contact_arc_length"]).max() < 1e-13
 
 
 def test_events_stand_where_the_sweep_has_them(case, exact):

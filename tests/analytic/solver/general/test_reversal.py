@@ -65,14 +65,8 @@ def test_it_sticks_between_the_limits(case):
     held = (on | sticks | back).to_numpy()
     moment = table["moment_z"].to_numpy()[held]
     assert np.abs(np.diff(moment)).max() < 0.1 * np.abs(moment).max()
-
-
-@pytest.mark.parametrize(
-    "case", [ROUGH, REAL, SQUARE, pytest.param(VARYING, marks=pytest.mark.slow)]
-)
-def test_every_sticking_state_balances(case):
-    table = turn_back(case, 0.0, 4000)
-    rows = table[table["sliding"] == "sticks"].iloc[::3]
+    # And every sticking state balances.
+    rows = table[sticks].iloc[::3]
     for _, row in rows.iterrows():
         one = row.to_frame().T.infer_objects()
         two = table.loc[[one.index[0], one.index[0]]].assign(

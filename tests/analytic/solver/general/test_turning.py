@@ -20,7 +20,6 @@ from analytic import (
     Whisk,
     calibrate,
     catenary,
-    certify,
     circle,
     named_case,
     parabola,
@@ -34,6 +33,7 @@ from compare import compare
 from compare.simulate.dispatch import simulate
 from engines.apart import _sweep
 from mujoco_models import Settings, simulate_sweep
+from tests.analytic.solver.general.sound import assert_confirmed
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_whisking.csv")
 PROFILES = {
@@ -111,18 +111,11 @@ def test_whisks_meet_an_integration_and_their_mirror_image(
         case = Case(beam, PROFILES[profile], Whisk(foot, -1.3, 1.9, 40), **held)
     except InputError:
         assume(False)
-    readings = solve_sweep(case)
-    settled = readings.table["status"].isin(["ok", "sticks"]).to_numpy()
-    touching = settled & readings.table["phase"].ne("free").to_numpy()
-    assert touching.sum() > 3
     # Forces of 100 EI/L^2 where it is nearly let go: rounding of the clamp's readings, marched.
-    assert certify(readings)[settled].max(axis=None) < 1e-9
-    image = solve_sweep(case.mirrored()).mirrored()
-    for name in (*CLAMP_READINGS, "contact_x", "clamp_angle"):
-        np.testing.assert_allclose(image.values(name), readings.values(name), atol=1e-11)
-    found = reconstruct(readings)[touching]
-    for name in ("contact_x", "contact_y", "contact_angle"):
-        np.testing.assert_allclose(found[name], readings.table[name][touching], atol=1e-8)
+    readings, found, touching = assert_confirmed(case, integrated=1e-9, mirrored=1e-11, seen=1e-8)
+    assert touching.sum() > 3
+    apart = found["contact_angle"] - readings.table["contact_angle"]
+    np.testing.assert_allclose(apart[touching], 0, atol=1e-8)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])

@@ -2,10 +2,8 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -24,7 +22,6 @@ from analytic import (
     named_case,
     parabola,
     polygon,
-    solve_contact,
     solve_sweep,
 )
 from analytic.problem.rest import first_touch
@@ -41,17 +38,8 @@ from analytic.solver.general.stations import solve_places
 from analytic.solver.residuals import residuals
 from tests.analytic.solver.general.sound import READ, assert_sound
 
-ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")
-PROFILES = {"g1": catenary(0.5, -0.8), "g2": parabola(0.5, 0.5)}
 SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])
 OBJECT = circle(1.0, lowest=(0, 0.4))
-COLUMN_OF = {
-    "s1": "contact_arc_length",
-    "x0": "foot_x",
-    "F_Ax": "force_x",
-    "F_Ay": "force_y",
-    "M_Az": "moment_z",
-}
 
 
 def cone(ratio):
@@ -60,40 +48,6 @@ def cone(ratio):
 
 def bow(strength):
     return lambda s: strength * s
-
-
-VARIANTS = {  # the beam, and what holds it
-    "cone-0.7": (Beam(flexural_rigidity=cone(0.7), radius=0), {}),
-    "cone-0.2": (Beam(flexural_rigidity=cone(0.2), radius=0), {}),
-    "graded-0.5": (Beam(flexural_rigidity=lambda s: 1 - s / 2, radius=0), {}),
-    "curved-linear": (Beam(natural_curvature=bow(-0.8), radius=0), {}),
-    "all": (
-        Beam(flexural_rigidity=cone(0.6), natural_curvature=bow(-0.4)),
-        {"clamp_stiffness": 8.0, "friction": 0.15},
-    ),
-}
-
-
-@pytest.mark.parametrize("variant", VARIANTS)
-@pytest.mark.parametrize("profile", PROFILES)
-def test_references(variant, profile):
-    beam, held = VARIANTS[variant]
-    rows = ROWS.query("variant == @variant and profile == @profile")
-    # At eta = 1 to rounding a straight vibrissa just touches: f is that rounding's square root.
-    rows = rows[rows["f"] > 1e-6]
-    assert len(rows) >= 5
-    alpha = np.deg2rad(rows["alpha_deg"].to_numpy(dtype=float))
-    found = solve_contact(PROFILES[profile], alpha, beam, **held)
-    found.index = rows.index
-    assert (found["status"] == "ok").all()
-    assert list(found["phase"].map({"tip": "A", "tangent": "B"})) == list(rows["phase"])
-    for reference, column in COLUMN_OF.items():
-        np.testing.assert_allclose(found[column], rows[reference], 1e-12, 1e-13)
-    rest = beam.unloaded
-    slope = found["tip_angle"] - rest.turn_between(found["contact_arc_length"].to_numpy(), 1.0)
-    np.testing.assert_allclose(slope, rows["phi1"], 1e-12, 1e-13)
-    turned = np.pi / 2 - found["moment_z"] / held.get("clamp_stiffness", math.inf)
-    np.testing.assert_allclose(turned, rows["phi0"], 1e-12, 1e-13)
 
 
 def case_of(beam, profile=OBJECT, stations=40, **held):
@@ -127,6 +81,7 @@ def test_stations_balance(profile, name):
 
 
 ANY = {
+    "varies": st.booleans(),
     "ratio": st.floats(0.05, 1),
     "grade": st.floats(-0.8, 0.8),
     "natural": st.tuples(st.floats(-0.6, 0.4), st.floats(-0.6, 0.4)),
@@ -139,7 +94,7 @@ ANY = {
 
 
 @pytest.mark.slow
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(**ANY)
 def test_random_vibrissae_balance(**drawn):
     balances(**drawn)
@@ -152,7 +107,7 @@ def test_many_random_vibrissae_balance(**drawn):
     balances(**drawn)
 
 
-def balances(ratio, grade, natural, compliance, friction, height, size, kind):
+def balances(varies, ratio, grade, natural, compliance, friction, height, size, kind):
     profile = {
         "circle": lambda: circle(size, lowest=(0.1, height)),
         "parabola": lambda: parabola(1 / size, height),
@@ -160,11 +115,13 @@ def balances(ratio, grade, natural, compliance, friction, height, size, kind):
         "ellipse": lambda: ellipse(semi_axes=(size, 1.2), lowest=(0.0, height)),
         "square": lambda: SQUARE,
     }[kind]()
-    beam = Beam(
-        flexural_rigidity=lambda s: (1 - (1 - ratio) * s) ** 4 * (1 + grade * s),
-        natural_curvature=lambda s: natural[0] + natural[1] * s**2,
-        tip_radius=0.005 * ratio,
-    )
+    beam = Beam(natural_curvature=natural[0] + natural[1])
+    if varies:
+        beam = Beam(
+            flexural_rigidity=lambda s: (1 - (1 - ratio) * s) ** 4 * (1 + grade * s),
+            natural_curvature=lambda s: natural[0] + natural[1] * s**2,
+            tip_radius=0.005 * ratio,
+        )
     stiffness = 1 / compliance if compliance else math.inf
     assert_sound(case_of(beam, profile, clamp_stiffness=stiffness, friction=friction))
 
@@ -219,18 +176,21 @@ def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
 @pytest.mark.parametrize(
     "varied",
     [
-        lambda little: Beam(tip_radius=0.005 * (1 - little)),
-        lambda little: Beam(flexural_rigidity=lambda s: 1 + little * s),
-        lambda little: Beam(natural_curvature=lambda s: little * s),
+        lambda little: {"beam": Beam(tip_radius=0.005 * (1 - little))},
+        lambda little: {"beam": Beam(flexural_rigidity=lambda s: 1 + little * s)},
+        lambda little: {"beam": Beam(natural_curvature=lambda s: little * s)},
+        lambda little: {"beam": Beam(natural_curvature=little)},
+        lambda little: {"clamp_stiffness": 1 / little},
+        lambda little: {"friction": little},
     ],
 )
 def test_limit_is_smooth(varied):
-    """Readings change in proportion to a little taper, grading or curvature."""
+    """Readings change in proportion to a little of what the paper's vibrissa has not."""
     sweep, profile = Sweep(100, start=2.5, stop=-2.5), named_case("catenary").profile
     reference = solve_sweep(Case(profile=profile, sweep=sweep))
 
     def change(little):
-        found = solve_sweep(Case(varied(little), profile, sweep))
+        found = solve_sweep(Case(profile=profile, sweep=sweep, **varied(little)))
         both = (found.table["phase"] == reference.table["phase"]) & (reference.values("foot_x") > 0)
         return np.stack([(found.values(n) - reference.values(n))[both] for n in READ])
 
@@ -316,22 +276,12 @@ def test_first_contact_is_that_of_two_rigid_bodies(name):
         ]
 
 
-def test_snap_off_is_a_fold():
-    beam = Beam(tip_radius=0.002)
-    profile = named_case("catenary").profile
-    fold = find_events(profile, beam, friction=0.1).snap_off
-    beside = solve_contact(
-        profile, fold.contact_angle + np.array([-1e-4, 0, 1e-4]), beam, friction=0.1
-    )
-    rise = beside["foot_x"].to_numpy() - fold.foot_x
-    assert rise[1] == pytest.approx(0, abs=1e-13)
-    assert (rise[[0, 2]] > 1e-9).all() and (rise[[0, 2]] < 1e-6).all()
-
-
 def test_curve_ends_where_a_flexible_tip_would_wind_up():
     """Past the snap-off the tip of a sharp cone turns on, into the body: thousands of states."""
     beam = Beam(radius=0.003, tip_radius=0.0003, natural_curvature=-0.4)
-    case = case_of(beam, PROFILES["g1"], stations=200, friction=0.3, clamp_stiffness=8.0)
+    case = case_of(
+        beam, named_case("catenary").profile, stations=200, friction=0.3, clamp_stiffness=8.0
+    )
     contour, vibrissa = case.centreline, Vibrissa.of(beam, Support(8.0, 0.3))
     touch = first_touch(contour, case.reach, vibrissa.unloaded)
     path = follow(contour, vibrissa, touch, case.reach, case.poses)

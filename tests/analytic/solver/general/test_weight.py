@@ -28,6 +28,7 @@ from analytic.from_clamp.shape import deflected_shapes
 from analytic.problem.errors import InputError
 from analytic.problem.table import as_table
 from analytic.solver.general.sweep import solve
+from tests.analytic.solver.general.sound import assert_confirmed
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_gravity.csv")
 PROFILES = {
@@ -62,15 +63,6 @@ def test_references(of_case):
         np.testing.assert_allclose(named.foot_x, row["foot_x"], **EXACT)
         for reference, column in (READ | PLACES).items():
             np.testing.assert_allclose(getattr(named, column), row[reference], **exact)
-
-
-def test_contacts_are_those_of_the_sweep():
-    profile = PROFILES["parabola(0.5,0.5)"]
-    sweep = solve_sweep(Case(profile=profile, sweep=Sweep(20), weight=(0.5, -1.0))).table
-    touching = sweep[sweep["phase"] != "free"]
-    found = solve_contact(profile, touching["contact_angle"], weight=(0.5, -1.0))
-    for column in ("foot_x", "force_x", "moment_z", "tip_angle"):
-        np.testing.assert_allclose(found[column], touching[column], atol=1e-11)
 
 
 def test_what_touches_nothing_hangs_from_its_clamp():
@@ -153,20 +145,9 @@ VARIED = [
 
 @pytest.mark.parametrize("case", VARIED, ids=lambda case: f"{case.weight}")
 def test_integration_from_the_clamp_to_the_tip_confirms_it(case):
-    readings = solve_sweep(case)
+    readings, found, _ = assert_confirmed(case, integrated=1e-11, seen=1e-12)
     assert (readings.table["status"] == "ok").all()
-    assert certify(readings).max(axis=None) < 1e-11
-    mirrored = solve_sweep(case.mirrored())
-    np.testing.assert_allclose(mirrored.values("force_x"), -readings.values("force_x"), atol=1e-12)
-
-
-@pytest.mark.parametrize("case", VARIED, ids=lambda case: f"{case.weight}")
-def test_the_contact_from_the_clamp(case):
-    readings = solve_sweep(case)
-    found = reconstruct(readings)
     assert list(found["phase"]) == list(readings.table["phase"])
-    for name in ("contact_x", "contact_y", "contact_arc_length"):
-        np.testing.assert_allclose(found[name], readings.table[name], atol=1e-12)
     x, y = deflected_shapes(readings)
     lengths = np.hypot(np.diff(x, axis=1), np.diff(y, axis=1)).sum(axis=1)
     np.testing.assert_allclose(lengths, case.beam.length, rtol=1e-3)
