@@ -16,10 +16,7 @@ from analytic.problem.readings import Readings
 
 
 def reconstruct_earlier(
-    readings: Readings,
-    method: str,
-    noise: Mapping[str, float] | None = None,
-    first_contact: float | None = None,
+    readings: Readings, method: str, noise: Mapping[str, float] | None = None
 ) -> pd.DataFrame:
     """Contact points by one of the methods that were there before the closed form."""
     if method not in METHODS:
@@ -31,7 +28,7 @@ def reconstruct_earlier(
     loaded = ~gap & (phase != "free")
     side = sides(sensed)
     foot_x, force_x, force_y, moment = (side * sensed)[:, loaded]
-    first = _first_contact(readings, sensed, loaded) if first_contact is None else first_contact
+    first = _first_contact(readings, sensed, loaded)
     travel = side[0, loaded] * first / readings.beam.length - foot_x
     answer = chosen.estimate(LoadedStations(foot_x, -force_x, force_y, moment, travel))
     reach = np.hypot(answer.x - foot_x, answer.y)
@@ -45,12 +42,13 @@ def reconstruct_earlier(
         status[loaded] = np.where(
             np.isnan(x), "no answer", np.where(reach > LONGEST, "longer than the vibrissa", "ok")
         )
-    found = {name: np.full(len(phase), np.nan) for name in ("contact_x", "contact_y")}
-    found["contact_x"][loaded] = side[0, loaded] * x * readings.beam.length
-    found["contact_y"][loaded] = y * readings.beam.length
-    for values in found.values():
-        values[status != "ok"] = np.nan
-    return pd.DataFrame({**found, "phase": phase, "status": status.astype(str)})
+    places = np.full((2, len(phase)), np.nan)
+    places[:, loaded] = side[0, loaded] * x, y
+    contact_x, contact_y = np.where(status == "ok", places * readings.beam.length, np.nan)
+    status = status.astype(str)
+    return pd.DataFrame(
+        {"contact_x": contact_x, "contact_y": contact_y, "phase": phase, "status": status}
+    )
 
 
 def _first_contact(readings: Readings, sensed: Floats, loaded: Booleans) -> float:

@@ -169,7 +169,7 @@ def _is_flat(end: ClampEnd) -> Booleans:
         return np.zeros(end.force.shape, dtype=bool)  # the moment is nil at one place alone
     there = end.march(tip)
     if vibrissa.rod is None:
-        square = np.abs(_square(end))
+        square = np.abs(_Pendulum.of(end).square)
     else:
         left, flexibility = there.m + end.couple(tip), vibrissa.rod.flexibility(np.ones(1))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -177,19 +177,26 @@ def _is_flat(end: ClampEnd) -> Booleans:
     return np.asarray((square < _FLAT) & (np.sin(np.pi / 4 - there.theta / 2) ** 2 < _FLAT))
 
 
-def _square(end: ClampEnd) -> Floats:
-    """Of p where the moment is the couple."""
-    couple, natural = end.couple(np.ones_like(end.force)), end.vibrissa.natural_curvature
-    v0, v1 = (end.moment - natural) / 2, (couple - natural) / 2
-    return np.asarray(np.sin(np.pi / 4 - end.theta / 2) ** 2 + (v0 - v1) / end.force * (v0 + v1))
+class _Pendulum(NamedTuple):
+    """p, g and v at the clamp, and v and the square of p where the moment is the couple."""
+
+    p: Floats
+    g: Floats
+    v: Floats
+    v_there: Floats
+    square: Floats
+
+    @classmethod
+    def of(cls, end: ClampEnd) -> "_Pendulum":
+        chi, natural = np.pi / 4 - end.theta / 2, end.vibrissa.natural_curvature
+        couple = end.couple(np.ones_like(end.force))
+        p, v, there = np.sin(chi), (end.moment - natural) / 2, (couple - natural) / 2
+        return cls(p, np.cos(chi), v, there, p**2 + (v - there) / end.force * (v + there))
 
 
 def _in_closed_form(end: ClampEnd) -> Iterator[_Candidate]:
     """The curvature is that of two places a period."""
-    p0, g0 = np.sin(np.pi / 4 - end.theta / 2), np.cos(np.pi / 4 - end.theta / 2)
-    couple, natural = end.couple(np.ones_like(end.force)), end.vibrissa.natural_curvature
-    v0, v1 = (end.moment - natural) / 2, (couple - natural) / 2
-    square = _square(end)
+    p0, g0, v0, v1, square = _Pendulum.of(end)
     there = (square >= 0) & (square <= 1)
     for sign in (1.0, -1.0):
         p1 = sign * np.sqrt(np.where(there, square, np.nan))

@@ -35,21 +35,12 @@ _AROUND = 20.0  # the same: where the power beside a line is looked at
 
 @dataclass(frozen=True)
 class NoiseFound:
-    """What the noise of some channels is like.
+    """What the noise of some channels is like."""
 
-    Parameters
-    ----------
-    correlation : array, shape (channels,)
-        Of the noise at one station with that at the next.
-    memory : array, shape (channels,)
-        Stations after which the correlated part has fallen to 1/e; 0 where there is none.
-    hum : float
-        Stations in a period of it; 0 where there is none.
-    """
-
-    correlation: Floats
+    correlation: Floats  # shape (channels,); of the noise at one station with that at the next
+    # Shape (channels,); stations after which the correlated part has fallen to 1/e; 0 if none.
     memory: Floats
-    hum: float
+    hum: float  # stations in a period of it; 0 where there is none
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
         """What a user should know of it, a line each."""

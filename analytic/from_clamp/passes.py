@@ -15,25 +15,13 @@ _BY_CHANCE = 0.01  # probability of so much scatter; less is no chance
 
 @dataclass(frozen=True)
 class Consistency:
-    """Whether passes say the same, each for itself.
+    """Whether passes say the same, each for itself."""
 
-    Parameters
-    ----------
-    numbers : array, shape (passes, unknowns)
-        What each pass alone says; NaN where it says nothing.
-    scatter, stated : array, shape (unknowns,)
-        Standard deviation of these, and what the noise lets one expect of it.
-    chi_square : float
-        Squares of their distances from what all say, over their covariances.
-    degrees : int
-        Degrees of freedom of that.
-    """
-
-    numbers: Floats
-    scatter: Floats
-    stated: Floats
-    chi_square: float
-    degrees: int
+    numbers: Floats  # shape (passes, unknowns); what each alone says; NaN where it says nothing
+    scatter: Floats  # shape (unknowns,); standard deviation of these
+    stated: Floats  # shape (unknowns,); what the noise lets one expect of it
+    chi_square: float  # squares of their distances from what all say, over their covariances
+    degrees: int  # of freedom of that
 
     @property
     def probability(self) -> float:

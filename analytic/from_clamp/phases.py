@@ -133,18 +133,8 @@ def beyond_one_contact(readings: Readings, noise: Mapping[str, float] | None = N
     One contact is at the tip, or tangential: force and moment then meet one of two conditions. Of
     two contacts they meet neither, by 1e-3 to 1e-2 if the vibrissa is curved towards the object.
 
-    Parameters
-    ----------
-    readings : Readings
-        Only the four sensed columns are used.
-    noise : mapping, optional
-        As of `analytic.reconstruct`.
-
-    Returns
-    -------
-    array, shape (stations,)
-        What the better one of both conditions misses, in standard deviations of what the noise
-        makes of it; NaN where no force acts.
+    In standard deviations of what the noise makes of what the better condition misses; NaN where no
+    force acts.
     """
     judged = judge_phases(readings, noise)
     with np.errstate(divide="ignore", invalid="ignore"):

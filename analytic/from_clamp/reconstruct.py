@@ -19,7 +19,7 @@ from analytic.from_clamp.contact import (
 )
 from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
-from analytic.from_clamp.phases import Judgement, judge_phases
+from analytic.from_clamp.phases import judge_phases
 from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
@@ -91,20 +91,15 @@ def reconstruct(
     if readings.running != "foot_x":
         return reconstruct_turning(readings, noise, partial(reconstruct, seed=seed))
     judged = judge_phases(readings, noise)
-    found = contact_table(readings, judged)
+    loaded = judged.phase != "free"
+    contact = SweptVibrissa.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
+    found = _table(readings, contact, loaded, judged.phase, judged.neither)
     if noise is not None:
-        radius = _uncertainty(readings, checked_noise(noise), judged.phase != "free", seed)
+        radius = _uncertainty(readings, checked_noise(noise), loaded, seed)
         found["uncertainty"] = np.where(
             found["phase"] == "unexplained", np.inf, radius * readings.beam.length
         )
     return found
-
-
-def contact_table(readings: Readings, judged: Judgement) -> pd.DataFrame:
-    """Contact points of stations whose phases are judged already."""
-    loaded = judged.phase != "free"
-    contact = SweptVibrissa.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
-    return _table(readings, contact, loaded, judged.phase, judged.neither)
 
 
 def require_beam(found: pd.DataFrame, readings: Readings) -> None:

@@ -89,30 +89,22 @@ def estimate_friction(
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
     readings.require_sweep("an estimate of the friction")
-    spread = _spread(readings, noise)
-    coefficient, found = 0.0, FrictionFound(0.0, np.inf, 0)
-    for number in range(_ROUNDS):
-        assumed = readings.with_friction(coefficient)
-        judged = judge_phases(assumed, noise)
-        tangent = (judged.phase == "tangent") & readings.trusted
-        if number == 0:
-            far = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
-            tangent = far & readings.trusted
-        sensed = dimensionless(readings)
-        sizes = np.array([largest(readings.values(name)) for name in CLAMP_READINGS])
-        zero = zero_uncertainty(readings, sizes) / units(readings.beam, CLAMP_READINGS)
-        found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
-        coefficient = found.coefficient
-    return found
-
-
-def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
-    """Standard deviation of force and moment, dimensionless, shape (3,)."""
+    sensed, unit = dimensionless(readings), units(readings.beam, CLAMP_READINGS)
+    sizes = np.array([largest(readings.values(name)) for name in CLAMP_READINGS])
     known = reading_noise(readings) if noise is None else checked_noise(noise)
-    stated = np.array([known.get(name, 0.0) for name in CLAMP_READINGS])
-    spread = stated / units(readings.beam, CLAMP_READINGS)
-    least = np.array([_LEAST * largest(values) for values in dimensionless(readings)[1:]])
-    return np.asarray(np.maximum(spread, least), dtype=float)
+    stated = np.array([known.get(name, 0.0) for name in CLAMP_READINGS]) / unit
+    spread = np.maximum(stated, [_LEAST * largest(values) for values in sensed[1:]])
+    zero = zero_uncertainty(readings, sizes) / unit
+    found = FrictionFound(0.0, np.inf, 0)
+    for number in range(_ROUNDS):
+        assumed = readings.with_friction(found.coefficient)
+        judged = judge_phases(assumed, noise)
+        tangent = judged.phase == "tangent"
+        if number == 0:
+            tangent = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
+        tangent &= readings.trusted
+        found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
+    return found
 
 
 def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> FrictionFound:

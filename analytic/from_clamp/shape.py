@@ -10,7 +10,6 @@ from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
-from analytic.problem.unloaded import Unloaded
 
 _STEPS = 64  # of a fourth-order method: far below the width of a line
 _FREE = 16  # points of a free end that is an arc
@@ -54,16 +53,10 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         x, y, phi, s, carried = state
         kappa = natural - moment + force_y * x - force_x * y + carried
         if beam.varies:
-            kappa = at_rest(s) + (kappa - natural) * beam.base_rigidity / beam.rigidity_at(s * long)
+            at_rest = beam.curvature_at(np.clip(s, 0, 1) * long) * long
+            kappa = at_rest + (kappa - natural) * beam.base_rigidity / beam.rigidity_at(s * long)
         cos, sin = np.cos(phi), np.sin(phi)
         return np.stack([cos, sin, kappa, np.ones_like(s), s * (w_y * cos - w_x * sin)])
-
-    def at_rest(s: Floats) -> Floats:
-        return beam.curvature_at(np.clip(s, 0, 1) * long) * long
-
-    def rate_at_rest(state: Floats) -> Floats:
-        _, _, phi, s = state
-        return np.stack([np.cos(phi), np.sin(phi), at_rest(s), np.ones_like(s)])
 
     clamp = np.stack(
         [
@@ -85,24 +78,20 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         outer = np.where(two, readings.values("second_contact_arc_length") / long, loaded)
         states = np.concatenate([states, march(rate, states[-1], outer - loaded, _STEPS)[1:]])
         loaded = outer
-    states = states[:, :4]
-    if isinstance(beam.natural_curvature, Along):
-        rest_of_it = march(rate_at_rest, states[-1], 1 - loaded, _FREE)[1:]
-        return _drawn(np.concatenate([states, rest_of_it]), foot_x, long)
-    x, y, phi, s = states[-1]
-    parts = np.linspace(0, 1, _FREE + 1)[1:] if natural else np.ones(1)
-    rest = (1 - loaded) * parts[:, None]
-    sine, cosine, _ = Unloaded(natural).at(rest)  # to the left of its start and along it
-    free = np.stack(
-        [
-            x + cosine * np.cos(phi) + sine * np.sin(phi),
-            y + cosine * np.sin(phi) - sine * np.cos(phi),
-            phi + natural * rest,
-            s + rest,
-        ],
-        axis=1,
-    )
-    return _drawn(np.concatenate([states, free]), foot_x, long)
+    return _drawn(np.concatenate([states[:, :2], _free_end(readings, states[-1])]), foot_x, long)
+
+
+def _free_end(readings: Readings, contact: Floats) -> Floats:
+    """Places beyond the last contact: the vibrissa at rest, moved to there and turned."""
+    x, y, phi, s, _ = contact
+    rest = readings.support.unloaded(readings.beam)
+    straight = not isinstance(rest.natural, Along) and rest.natural == 0
+    parts = np.ones(1) if straight else np.linspace(0, 1, _FREE + 1)[1:]
+    at_x, at_y, slope = rest.at(s)
+    to_x, to_y, _ = rest.at(s + (1 - s) * parts[:, None])
+    cos, sin = np.cos(phi - slope), np.sin(phi - slope)
+    to_x, to_y = to_x - at_x, to_y - at_y
+    return np.stack([x + cos * to_x - sin * to_y, y + sin * to_x + cos * to_y], axis=1)
 
 
 def _outer_share(readings: Readings) -> Floats:

@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
-from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
+from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
-from analytic.from_clamp.calibration.unknowns import (
-    UNKNOWNS,
-    Sought,
-    checked_unknowns,
-)
+from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -190,10 +186,7 @@ def calibrate(
     names = checked_unknowns(unknowns, case)
     for one in passes:
         check_size(one, case)
-    carried = case.support.carried(case.beam)
-    measured = Measured.together(
-        [measured_under_load(one, carried, noise, len(names)) for one in passes]
-    )
+    measured = Measured.of(passes, case.support.carried(case.beam), noise, len(names))
     direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))

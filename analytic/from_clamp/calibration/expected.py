@@ -1,6 +1,6 @@
 """What the clamp of a vibrissa reads at any foot positions, by the closed form."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -40,10 +40,6 @@ class Expected:
         if case.sweep.direction == "right":
             found[:, self.loaded] *= _MIRRORED
         return found
-
-    def scaled(self, case: Case, factor: float) -> "Expected":
-        """Those of a vibrissa that is stiffer throughout, in a rigid clamp."""
-        return replace(self, case=case, readings=factor * self.readings)
 
     @cached_property
     def _slopes(self) -> Floats:

@@ -124,23 +124,11 @@ class LeastSquaresFit(ABC):
             return None
         if not np.array_equal(before, numbers):
             try:
-                found = self._swept(numbers, before, found)
+                found = [expected_readings(*case) for case in self._cases(numbers)]
             except (InputError, ArithmeticError):
                 found = None
             self._last = numbers.copy(), found
         return found
-
-    def _swept(
-        self, numbers: Floats, before: Floats, known: list[Expected] | None
-    ) -> list[Expected]:
-        """The sweeps, or those before if they differ by the rigidity of the vibrissa alone."""
-        cases = self._cases(numbers)
-        other = np.array([kind.name for kind in self.kinds]) != "flexural_rigidity"
-        rigid = np.isinf(self.sought(numbers).case.clamp_stiffness)
-        if known is not None and rigid and np.array_equal(numbers[other], before[other]):
-            factor = cases[0][0].beam.base_rigidity / known[0].case.beam.base_rigidity
-            return [one.scaled(case, factor) for one, (case, _) in zip(known, cases, strict=True)]
-        return [expected_readings(*case) for case in cases]
 
     def _cases(self, numbers: Floats) -> list[tuple[Case, Floats]]:
         """The cases of the sweeps to either side, and the foot positions of their stations."""

@@ -31,14 +31,21 @@ class Measured:
     zero: Floats  # shape (3,); standard uncertainty of the zero of each reading
 
     @classmethod
-    def together(cls, passes: Sequence["Measured"]) -> "Measured":
-        """All of these passes; of one rig, so that the noise of each is that of all."""
+    def of(
+        cls,
+        passes: Sequence[Readings],
+        carried: tuple[float, float],
+        noise: Mapping[str, float] | None,
+        unknowns: int,
+    ) -> "Measured":
+        """What is under load in all passes, of one rig: the noise of each is that of all."""
+        each = [measured_under_load(one, carried, noise, unknowns) for one in passes]
         return cls(
-            np.concatenate([one.foot_x for one in passes]),
-            np.concatenate([one.readings for one in passes], axis=1),
-            np.sqrt(np.mean([one.spread**2 for one in passes], axis=0)),
-            tuple(n for one in passes for n in one.rows),
-            np.sqrt(np.mean([one.zero**2 for one in passes], axis=0)),
+            np.concatenate([one.foot_x for one in each]),
+            np.concatenate([one.readings for one in each], axis=1),
+            np.sqrt(np.mean([one.spread**2 for one in each], axis=0)),
+            tuple(n for one in each for n in one.rows),
+            np.sqrt(np.mean([one.zero**2 for one in each], axis=0)),
         )
 
     @property

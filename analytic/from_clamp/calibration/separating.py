@@ -21,19 +21,12 @@ _PART = 0.1  # of the direction's largest part; smaller ones are left out
 
 @dataclass(frozen=True)
 class Undistinguished:
-    """A direction along which unknowns change together, and what would show how far.
+    """A direction along which unknowns change together, and what would show how far."""
 
-    Parameters
-    ----------
-    along : dict
-        By unknown, how far each is off at the end of the 95 % interval, all at once; of the clamp's
-        compliance [rad/(EI/L)], else in the unit of the case.
-    sweeps : dict
-        By further sweep, what it would multiply that interval by, the best first.
-    """
-
+    # By unknown, how far each is off at the end of the 95 % interval, all at once; of the clamp's
+    # compliance [rad/(EI/L)], else in the unit of the case.
     along: dict[str, float]
-    sweeps: dict[str, float]
+    sweeps: dict[str, float]  # by further sweep, what it multiplies that interval by, best first
 
     def said(self) -> Iterator[str]:
         """What a user should know of it, a line each."""

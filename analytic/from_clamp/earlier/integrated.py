@@ -1,11 +1,8 @@
-"""Methods that integrate the elastica from the clamp to where its moment vanishes."""
-
-from collections.abc import Callable
+"""The elastica integrated from the clamp to where its moment vanishes."""
 
 import numpy as np
 
 from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
-from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 
 _TOLERANCE = 1e-13
@@ -19,62 +16,35 @@ def up_to_zero(sensed: LoadedStations) -> Answer:
     """Integrate the elastica up to the first zero of its moment, or to the tip.
 
     In the plane: G. R. Scholz and C. D. Rahn, Profile sensing with an actuated whisker, IEEE
-    Transactions on Robotics and Automation 20, 2004; in space: `spatial_contact`.
-    """
-    none = np.zeros_like(sensed.foot_x)
-    force = np.column_stack([-sensed.across, sensed.along, none])
-    moment = np.column_stack([none, none, sensed.moment])
-    place = spatial_contact(force, moment, np.tile([0.0, 1.0, 0.0], (len(none), 1)))
-    return Answer(sensed.foot_x + place[:, 0], place[:, 1])
-
-
-def spatial_contact(force: Floats, moment: Floats, tangent: Floats) -> Floats:
-    """The contact of a straight isotropic vibrissa under one force, in space.
-
-    r' = t, t' = t x m, m = M - r x F, up to where m vanishes: T. N. Clements and C. D. Rahn,
+    Transactions on Robotics and Automation 20, 2004. In space it is T. N. Clements and C. D. Rahn,
     Three-dimensional contact imaging with an actuated whisker, IEEE Transactions on Robotics 22,
-    2006.
+    2006, and a sweep in a plane is the same.
     """
-    starts = range(0, len(force), _BLOCK)
-    blocks = [[given[i : i + _BLOCK] for given in (force, moment, tangent)] for i in starts]
-    return np.concatenate([np.zeros((0, 3)), *(_in_space(*block) for block in blocks)])
+    starts = range(0, len(sensed.moment), _BLOCK)
+    blocks = [LoadedStations(*(values[i : i + _BLOCK] for values in sensed)) for i in starts]
+    x, y = np.concatenate([np.zeros((2, 0)), *map(_contacts, blocks)], axis=1)
+    return Answer(sensed.foot_x + x, y)
 
 
-def _in_space(force: Floats, moment: Floats, tangent: Floats) -> Floats:
-    size = np.linalg.norm(moment, axis=1)
-    force, moment = force.T, moment.T
-    axis = moment / size
-
-    def rate(state: Floats) -> Floats:
-        r, t = state[:3], state[3:]
-        return np.concatenate([t, cross(t, moment - cross(r, force))])
-
-    def left(state: Floats) -> tuple[Floats, Floats]:
-        r, t = state[:3], state[3:]
-        m = moment - cross(r, force)
-        return (m * axis).sum(axis=0), (cross(force, t) * axis).sum(axis=0)
-
-    start = np.concatenate([np.zeros_like(force), tangent.T])
-    return _up_to_zero(rate, start, left, size)[:3].T
-
-
-def _up_to_zero(
-    rate: Callable[[Floats], Floats],
-    start: Floats,
-    left: Callable[[Floats], tuple[Floats, Floats]],
-    size: Floats,
-) -> Floats:
-    """States of shape (m, n) at the first zero of what is `left`, or at the tip; NaN if neither.
-
-    `left` returns the moment that is left at a state, and its rate; `size` is what it is at first.
-    """
-    m, n = start.shape
+def _contacts(sensed: LoadedStations) -> Floats:
+    """Contacts as seen from the foot, (2, n); NaN where too much moment is left at the tip."""
     from scipy.integrate import solve_ivp  # slow to load, and few methods need it
 
+    n = len(sensed.moment)
+
+    def left(state: Floats) -> Floats:
+        x, y, _ = state
+        return np.asarray(sensed.moment - sensed.along * x - sensed.across * y)
+
+    def rate(_: float, state: Floats) -> Floats:
+        here = state.reshape(3, n)
+        return np.concatenate([np.cos(here[2]), np.sin(here[2]), -left(here)])
+
+    start = np.repeat([0.0, 0.0, np.pi / 2], n)
     way = solve_ivp(
-        lambda _, state: rate(state.reshape(m, n)).ravel(),
+        rate,
         (0.0, 1.0),
-        start.ravel(),
+        start,
         method="DOP853",
         rtol=_TOLERANCE,
         atol=_TOLERANCE,
@@ -84,21 +54,18 @@ def _up_to_zero(
 
     def at(s: Floats) -> Floats:
         """Each station's state at its own arc length."""
-        found = np.empty((m, n))
-        for piece in np.unique(np.searchsorted(way.ts, s, side="left")):
-            here = np.searchsorted(way.ts, s, side="left") == piece
-            every = way(s[here]).reshape(m, n, -1)
-            found[:, here] = every[:, np.flatnonzero(here), np.arange(here.sum())]
-        return found
+        return np.asarray(np.einsum("knn->kn", way(s).reshape(3, n, n)))
 
-    profile = np.array([left(way(s).reshape(m, n))[0] for s in _PLACES])
+    profile = np.array([left(way(s).reshape(3, n)) for s in _PLACES])
     falls = (profile[:-1] > 0) & (profile[1:] <= 0)
     crosses = falls.any(axis=0)
     last = np.where(crosses, falls.argmax(axis=0) + 1, len(_PLACES) - 1)
     s = _PLACES[last]
     for _ in range(_NEWTON):
-        value, slope = left(at(s))
+        here = at(s)
+        falling = sensed.along * np.cos(here[2]) + sensed.across * np.sin(here[2])
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(slope < 0, value / slope, 0.0)
-        s = np.clip(s - step, _PLACES[last - 1], _PLACES[last])
-    return np.where(crosses | (profile[-1] < _AT_TIP * size), at(s), np.nan)
+            step = np.where(falling > 0, left(here) / falling, 0.0)
+        s = np.clip(s + step, _PLACES[last - 1], _PLACES[last])
+    near_tip = np.abs(profile[-1]) < _AT_TIP * sensed.moment
+    return np.where(crosses | near_tip, at(s)[:2], np.nan)

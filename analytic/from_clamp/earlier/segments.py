@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Floats, Integers
 
 
 class BaseSeen(NamedTuple):
@@ -29,7 +29,11 @@ def by_segments(sensed: LoadedStations, segments: int = 40, half_cell: bool = Fa
     # Where the force is normal to the vibrissa, at the contact, the base is turned away by so much.
     turn = np.arctan2(sensed.along, sensed.across)
     half = 0.5 / segments if half_cell else 0.0
-    whole, found = _bracket(force, turn, segments, half)
+    size, every = np.full_like(force, 1 / segments), np.ones_like(force)
+    enough = np.array(
+        [bent(force, size, n * every, segments, half).turned >= turn for n in range(segments)]
+    )
+    found, whole = np.asarray(enough.any(axis=0)), enough.argmax(axis=0).astype(float)
     at = np.flatnonzero(found & (turn > 0))
 
     def beyond(which: Integers, rest: Floats) -> Floats:
@@ -37,7 +41,7 @@ def by_segments(sensed: LoadedStations, segments: int = 40, half_cell: bool = Fa
         return bent(force[some], rest, whole[some], segments, half).turned - turn[some]
 
     rest = np.zeros_like(force)  # a contact that turns nothing away is at the base
-    rest[at] = zeros(beyond, rest[at], np.full(at.size, 1 / segments))
+    rest[at] = zeros(beyond, rest[at], size[at])
     across, height = from_base(bent(force, rest, whole, segments, half))
     return Answer(sensed.foot_x + across, height).where(found)
 
@@ -48,34 +52,13 @@ def from_base(seen: BaseSeen) -> tuple[Floats, Floats]:
     return np.abs(cos * seen.y - sin * seen.x), -(cos * seen.x + sin * seen.y)
 
 
-def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[Floats, Booleans]:
-    """How many whole segments there are between the base and the first contact that fits."""
-    h = 1 / segments
-    x, y, turned = np.full_like(force, -h), np.zeros_like(force), np.zeros_like(force)
-    whole = np.zeros_like(force)
-    found = turned - half * x * force >= turn  # the contact is on the first segment
-    for number in range(1, segments):
-        x, y, turned = _joint(force, x, y, turned, h)
-        now = ~found & (turned - half * x * force >= turn)
-        whole[now] = number
-        found |= now
-    return whole, found
-
-
 def bent(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> BaseSeen:
-    """From a contact at `rest` beyond so many whole segments."""
+    """From a contact at `rest` beyond so many whole segments, joint by joint."""
+    h = 1 / segments
     x, y, turned = -rest, np.zeros_like(force), np.zeros_like(force)
     for number in range(int(whole.max(initial=0))):
         there = number < whole
-        nx, ny, nturned = _joint(force, x, y, turned, 1 / segments)
-        x, y = np.where(there, nx, x), np.where(there, ny, y)
-        turned = np.where(there, nturned, turned)
+        turned = np.where(there, turned - force * x * h, turned)
+        x = np.where(there, x - h * np.cos(turned), x)
+        y = np.where(there, y - h * np.sin(turned), y)
     return BaseSeen(x, y, turned - half * x * force)
-
-
-def _joint(
-    force: Floats, x: Floats, y: Floats, turned: Floats, h: float
-) -> tuple[Floats, Floats, Floats]:
-    """Bend at a joint, and go on to the next."""
-    turned = turned - force * x * h
-    return x - h * np.cos(turned), y - h * np.sin(turned), turned

@@ -13,7 +13,7 @@ from analytic.from_clamp.calibration.calibrate import (
     fitted_to_noise,
 )
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
-from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
+from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.unknowns import Sought
 from analytic.from_clamp.correlated import Estimated, NoiseFound
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -21,7 +21,6 @@ from analytic.from_clamp.object.families import Family, families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.from_clamp.reconstruct import reconstruct, require_beam
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
 from analytic.problem.contours.families import circle
@@ -225,12 +224,8 @@ def _measured(
     passes: Sequence[Readings], noise: Mapping[str, float] | None, numbers: int
 ) -> tuple[Measured, Case]:
     """The stations under load, and the case of the vibrissa past an object to be replaced."""
-    beam: Beam = passes[0].beam
-    held = passes[0].support
-    carried = held.carried(beam)
-    measured = Measured.together(
-        [measured_under_load(one, carried, noise, numbers) for one in passes]
-    )
+    beam, held = passes[0].beam, passes[0].support
+    measured = Measured.of(passes, held.carried(beam), noise, numbers)
     case = Case(
         beam,
         circle(beam.length, (0.0, 0.5 * beam.length)),

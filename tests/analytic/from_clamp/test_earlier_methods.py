@@ -195,17 +195,3 @@ def test_segments_do_not_find_the_tip():
     found = errors(segments.by_segments(given, 160, half_cell=True), table[tip])
     assert np.isnan(found).mean() > 0.5
     assert np.nanmin(found) > 0.01
-
-
-def test_a_plane_in_space_is_the_plane():
-    """Readings turned about any axis give contacts turned about it."""
-    table, given = swept(CONTOURS["circle"])
-    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-    rotation *= np.sign(np.linalg.det(rotation))
-    none = np.zeros(len(table))
-    force = np.column_stack([-given.across, given.along, none]) @ rotation.T
-    moment = np.column_stack([none, none, given.moment]) @ rotation.T
-    place = integrated.spatial_contact(force, moment, np.tile(rotation[:, 1], (len(table), 1)))
-    place = place @ rotation
-    assert place[:, 2] == pytest.approx(0, abs=1e-12)
-    assert given.foot_x + place[:, 0] == pytest.approx(table["contact_x"].to_numpy(), abs=1e-10)
