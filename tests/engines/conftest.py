@@ -1,4 +1,4 @@
-"""A fault of MuJoCo's that the tests of the split plant."""
+"""A fault of MuJoCo's that the tests of the split plant, and distributions as pip installs them."""
 
 import pytest
 
@@ -19,3 +19,18 @@ def stiffer(monkeypatch):
         monkeypatch.setattr(Chain, "spec", spec)
 
     return plant
+
+
+@pytest.fixture
+def install(tmp_path, monkeypatch):
+    """Put a distribution with entry points on the path."""
+
+    def put(name: str, version: str, points: str = "") -> None:
+        about = tmp_path / f"{name.replace('-', '_')}-{version}.dist-info"
+        about.mkdir()
+        text = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        (about / "METADATA").write_text(text)
+        (about / "entry_points.txt").write_text(points)
+        monkeypatch.syspath_prepend(tmp_path)
+
+    return put
