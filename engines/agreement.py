@@ -160,7 +160,7 @@ class Agreement:
         """What may disagree, by how much, and how much of that is nothing."""
         layout, scale, foot = self._layout, self._scale(state), np.array([foot_x, 0.0])
         yield "springs and contacts", self.imbalance(state), _FORCES
-        held = state.clamp + self._sum(state)
+        held = state.clamp + resultant(state.points, state.forces)
         yield "clamp and contacts", float(np.abs(held).max()) / scale, _FORCES
         yield "foot and clamp", float(np.hypot(*(state.joints[0] - layout.base[0]))), _PLACES
         chords = np.hypot(*np.diff(state.joints, axis=0).T)
@@ -207,15 +207,17 @@ class Agreement:
         carried = np.arange(arms.shape[1]) <= link[:, None]
         return np.asarray((carried * (arms[:, :, 0] * fy - arms[:, :, 1] * fx)).sum(axis=0))
 
-    def _sum(self, state: State) -> Floats:
-        """Of the contacts: force, and moment about the foot."""
-        (x, y), (fx, fy) = state.points.T, state.forces.T
-        return np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
-
     def _scale(self, state: State) -> float:
         """The largest force or moment that anything reports."""
-        reported = self._springs(state), state.clamp, self._sum(state)
+        contacts = resultant(state.points, state.forces)
+        reported = self._springs(state), state.clamp, contacts
         return max(_LEAST, *(float(np.abs(x).max()) for x in reported))
+
+
+def resultant(points: Floats, forces: Floats) -> Floats:
+    """Sum of forces, and their moment about the origin, shape (3,)."""
+    (x, y), (fx, fy) = points.T, forces.T
+    return np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])
 
 
 def on_axis(state: State, points: Floats) -> tuple[Integers, Floats, Floats]:

@@ -166,16 +166,15 @@ class SteppedRest:
 
     def _row(self, state: State, foot_x: float) -> Row:
         doubt = self._agreement.doubt(state, foot_x)
+        fx, fy, moment = state.clamp.tolist()
         size = np.hypot(*state.forces.T)
         if size.sum() < _NO_LOAD:
-            fx, fy, moment = state.clamp.tolist()
             return replace(self._free, force_x=fx, force_y=fy, moment_z=moment, doubt=doubt)
         layout = self._stepper.layout
         link, place, _ = on_axis(state, state.points)
         weight = size / size.sum()
         arc_length = float(weight @ (layout.joints[link] + place * layout.lengths[link]))
         (x, y), (push_x, push_y) = weight @ state.points, state.forces.sum(axis=0)
-        fx, fy, moment = state.clamp.tolist()
         run, rise = state.joints[-1] - state.joints[-2]
         bent = float(np.arctan2(rise, run)) - np.pi / 2 - float(layout.headings[-1])
         return Row(

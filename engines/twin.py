@@ -19,6 +19,7 @@ from analytic.problem.errors import InputError
 from analytic.problem.mirror import facing, leftward
 from analytic.problem.poses import Pose
 from analytic.problem.readings import Readings
+from engines.agreement import resultant
 from engines.linkage import Maker
 from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.beams.protocol import Beam
@@ -209,8 +210,7 @@ class Twin:
     def discrepancy(self) -> float:
         """By how much that differs from the contacts and from the first spring."""
         arm = self._contacts.point[self._contacts.loaded] - [self.pose.foot_x, 0.0]
-        (x, y), (fx, fy) = arm.T, self._forces.T
-        required = clamp.Clamp(*(-np.array([fx.sum(), fy.sum(), (x * fy - y * fx).sum()])).tolist())
+        required = clamp.Clamp(*(-resultant(arm, self._forces)).tolist())
         first = float(self._elastic[0])
         return clamp.discrepancy(self.clamp(), required, self.layout.base[0], first)
 

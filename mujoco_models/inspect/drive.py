@@ -97,11 +97,17 @@ def joints_of(model: mujoco.MjModel, body: int) -> range:
 
 def _welded_to(model: mujoco.MjModel, body: int) -> int:
     """What a weld ties a free body to; the world if none does."""
-    for weld in np.flatnonzero((model.eq_type == mujoco.mjtEq.mjEQ_WELD) & model.eq_active0):
-        ends = bodies_of_constraint(model, int(weld))
-        if body in ends:
-            return ends[1 - ends.index(body)]
-    return 0
+    welds = welds_of(model, body)
+    if not welds:
+        return 0
+    ends = bodies_of_constraint(model, welds[0])
+    return ends[1 - ends.index(body)]
+
+
+def welds_of(model: mujoco.MjModel, body: int) -> tuple[int, ...]:
+    """The active welds that tie a body to another."""
+    welds = np.flatnonzero((model.eq_type == mujoco.mjtEq.mjEQ_WELD) & model.eq_active0).tolist()
+    return tuple(weld for weld in welds if body in bodies_of_constraint(model, weld))
 
 
 def bodies_of_constraint(model: mujoco.MjModel, number: int) -> list[int]:

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.inspect.drive import bodies_of_constraint, holders, joints_of, mover_of
+from mujoco_models.inspect.drive import holders, joints_of, mover_of, welds_of
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.parts import Parts
 
@@ -43,7 +43,7 @@ def on_weld(model: mujoco.MjModel, parts: Parts, left: Floats) -> HeldChain | No
     """The chain on a free body that a weld holds; None if there is no such body."""
     free = [
         j for j in joints_of_hand(model, parts, left)
-        if model.jnt_type[j] == _FREE and _welds_of(model, int(model.jnt_bodyid[j]))
+        if model.jnt_type[j] == _FREE and welds_of(model, int(model.jnt_bodyid[j]))
     ]  # fmt: skip
     return HeldChain(model, parts, _dofs_of(model, free)) if free else None
 
@@ -80,7 +80,7 @@ def measure_hand(
         if of_it[j] > _SHARE
     ]  # fmt: skip
     free = bool(giving) and model.jnt_type[giving[0]] == _FREE
-    welds = _welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else ()
+    welds = welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else ()
     return Hand(
         joints=tuple(model.joint(j).name or f"joint {j}" for j in giving),
         numbers=tuple(giving),
@@ -97,11 +97,6 @@ def _dofs_of(model: mujoco.MjModel, joints: list[int]) -> Integers:
     return np.concatenate(
         [model.jnt_dofadr[j] + np.arange(n) for j, n in zip(joints, counts, strict=True)]
     )
-
-
-def _welds_of(model: mujoco.MjModel, body: int) -> tuple[int, ...]:
-    welds = np.flatnonzero((model.eq_type == mujoco.mjtEq.mjEQ_WELD) & model.eq_active0).tolist()
-    return tuple(w for w in welds if body in bodies_of_constraint(model, w))
 
 
 def _time_constant(model: mujoco.MjModel, welds: tuple[int, ...]) -> float:

@@ -86,6 +86,10 @@ class HeldModel:
         there = 0 < share < 1 and aside < _ON_PIECE * np.linalg.norm(way)
         return np.asarray(first + share * way if there else first)
 
+    def axes_of(self, body: int) -> Floats:
+        """How a body is turned: its axes in columns."""
+        return np.array(self.data.xmat[body].reshape(3, 3))
+
     def sensed(self, sensor: int) -> Floats:
         """What a sensor reads."""
         first = self.model.sensor_adr[sensor]

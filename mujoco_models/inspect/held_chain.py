@@ -41,15 +41,14 @@ class HeldChain(HeldModel):
         ends = self._world(axis_of(self.model, self.parts.geoms[-1]), self._body(-1))
         joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
         far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
-        turn = self.data.xmat[self._tip_body].reshape(3, 3)
-        self.tip_in_body = turn.T @ (far - self.data.xpos[self._tip_body])
+        from_body = far - self.data.xpos[self._tip_body]
+        self.tip_in_body = self.axes_of(self._tip_body).T @ from_body
 
     def _body(self, geom: int) -> int:
         return int(self.model.geom_bodyid[self.parts.geoms[geom]])
 
     def _world(self, points: Floats, body: int) -> Floats:
-        turn = self.data.xmat[body].reshape(3, 3)
-        return np.asarray(self.data.xpos[body] + points @ turn.T)
+        return np.asarray(self.data.xpos[body] + points @ self.axes_of(body).T)
 
     @property
     def tip(self) -> Floats:

@@ -89,8 +89,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         foot=model.body(parts.foot).name,
         body=parts.foot,
         body_mass=float(model.body_mass[parts.foot]),
-        frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes])
-        @ _on_body(held, parts.foot),
+        frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive_of(model, parts.foot, -axes[0]),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
@@ -314,16 +313,17 @@ def _seen(
     lever = offset if is_force else arm - seen
     cutoff = held.cutoffs[sensor] or np.inf
     site = int(held.model.sensor_objid[sensor])
-    on_body = _on_body(held, int(held.model.site_bodyid[site]))
+    body = int(held.model.site_bodyid[site])
+    on_body = held.axes_of(body)
     upright = on_body.T @ axes.T @ nearest_axes(turned).T
     quaternion = np.empty(4)
     mujoco.mju_mat2Quat(quaternion, upright.ravel())
-    clamp = on_body.T @ (held.clamp - held.data.xpos[held.model.site_bodyid[site]])
+    clamp = on_body.T @ (held.clamp - held.data.xpos[body])
     return Sensed(
         name,
         sensor,
         site,
-        int(held.model.site_bodyid[site]),
+        body,
         clamp,
         quaternion,
         on_body.T @ axes[1],
@@ -333,11 +333,6 @@ def _seen(
         _feels_contacts(held, sensor),
         cutoff,
     )
-
-
-def _on_body(held: Held, body: int) -> Floats:
-    """How a body is turned."""
-    return np.array(held.data.xmat[body].reshape(3, 3))
 
 
 def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:

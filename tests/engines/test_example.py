@@ -15,18 +15,13 @@ EXAMPLE = ROOT / "docs" / "examples" / "engine"
 
 
 @pytest.fixture
-def installed(tmp_path, monkeypatch):
+def installed(tmp_path, install):
     """Its module on the path, and its entry points beside it."""
     project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
-    about = tmp_path / "shooting_engine-1.0.dist-info"
-    about.mkdir()
-    names = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
-    (about / "METADATA").write_text(names)
     points = project["entry-points"]["vibrissa.engines"]
     lines = ["[vibrissa.engines]", *(f"{name} = {target}" for name, target in points.items())]
-    (about / "entry_points.txt").write_text("\n".join(lines))
+    install(project["name"], project["version"], "\n".join(lines))
     (tmp_path / "shooting_engine.py").write_text((EXAMPLE / "shooting_engine.py").read_text())
-    monkeypatch.syspath_prepend(tmp_path)
     yield tmp_path
     sys.modules.pop("shooting_engine", None)
 

@@ -15,12 +15,8 @@ def test_odd_stiffnesses_are_a_line(tmp_path, stiffnesses):
     assert "numbers between commas" in done.stderr
 
 
-def test_a_wrong_version_of_the_extra_is_a_line(tmp_path, monkeypatch):
-    hidden = tmp_path / "hidden"
-    (hidden / "mujoco_warp-1.0.dist-info").mkdir(parents=True)
-    text = "Metadata-Version: 2.1\nName: mujoco-warp\nVersion: 1.0\n"
-    (hidden / "mujoco_warp-1.0.dist-info" / "METADATA").write_text(text)
-    monkeypatch.syspath_prepend(hidden)
+def test_a_wrong_version_of_the_extra_is_a_line(tmp_path, install):
+    install("mujoco-warp", "1.0")
     done = vibrissa(*FLOAT32, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

@@ -72,14 +72,10 @@ mujoco = odd_engines:RAISES
 
 
 @pytest.fixture
-def odd_engines(tmp_path, monkeypatch):
+def odd_engines(tmp_path, install):
     """A distribution that offers engines, as pip installs one."""
     (tmp_path / "odd_engines.py").write_text(textwrap.dedent(ODD))
-    about = tmp_path / "odd_engines-1.0.dist-info"
-    about.mkdir()
-    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: odd-engines\nVersion: 1.0\n")
-    (about / "entry_points.txt").write_text(POINTS)
-    monkeypatch.syspath_prepend(tmp_path)
+    install("odd-engines", "1.0", POINTS)
     yield tmp_path
     sys.modules.pop("odd_engines", None)
 

@@ -8,7 +8,6 @@ from analytic import named_case, solve_sweep
 from compare.explain.split import ROUNDING, split
 from engines import find_engine
 from mujoco_models import Settings, simulate_sweep
-from mujoco_models.beams.chain import Chain
 
 pytest.importorskip("pydrake", reason="Drake is an extra: pip install '.[drake]'")
 pytest.importorskip("exudyn", reason="Exudyn is an extra: pip install '.[exudyn]'")
@@ -37,17 +36,10 @@ def test_links_of_a_sound_model_are_the_model(others):
 
 
 @pytest.mark.parametrize("joint", [0, 10])
-def test_a_joint_two_percent_too_stiff_is_implementation(others, monkeypatch, joint):
+def test_a_joint_two_percent_too_stiff_is_implementation(others, stiffer, joint):
     """What the size of the links makes is alike in both, and takes no part in it."""
     settings, exact, sweeps = others
-    make = Chain.spec
-
-    def stiffer(self, radius, furnish):
-        spec = make(self, radius, furnish)
-        spec.joints[joint].stiffness[0] *= 1.02
-        return spec
-
-    monkeypatch.setattr(Chain, "spec", stiffer)
+    stiffer(joint)
     faulty = simulate_sweep(CASE, settings)
     found = split(exact, {"mujoco": faulty, **sweeps}, ROLES)
     assert max(found.implementation.values()) > 100 * ROUNDING

@@ -7,7 +7,6 @@ import pytest
 from analytic import named_case, solve_sweep
 from compare.explain.split import split
 from mujoco_models import Settings, simulate_sweep
-from mujoco_models.beams.chain import Chain
 
 ROLES = {"mujoco": "subject", "sound": "twin", "finer": "other model"}
 CASE = replace(named_case("tip-only"), sweep=replace(named_case("tip-only").sweep, stations=40))
@@ -38,17 +37,10 @@ def test_a_twin_that_is_equal_leaves_the_model(exact, sound):
 
 @pytest.mark.parametrize(("joint", "share"), [(0, 0.1), (4, 0.05)])
 def test_a_joint_that_is_two_percent_too_stiff_is_implementation(
-    exact, sound, monkeypatch, joint, share
+    exact, sound, stiffer, joint, share
 ):
     """The size of the links errs alike in both, and takes no part in what is between them."""
-    make = Chain.spec
-
-    def stiffer(self, radius, furnish):
-        spec = make(self, radius, furnish)
-        spec.joints[joint].stiffness[0] *= 1.02
-        return spec
-
-    monkeypatch.setattr(Chain, "spec", stiffer)
+    stiffer(joint)
     faulty = simulate_sweep(CASE, SETTINGS)
     found = split(exact, {"mujoco": faulty, "sound": sound}, ROLES)
     assert max(found.implementation.values()) > 1e-4

@@ -85,21 +85,18 @@ TUNED = {
 }
 
 
-@pytest.mark.parametrize("choice", SOUND.values(), ids=SOUND)
-def test_a_sound_engine_is_not_blamed(example, choice):
-    assert doubts(example.Links(CASE, **choice), CASE) == [""] * 3
-
-
-@pytest.mark.parametrize("case", OTHERS.values(), ids=OTHERS)
-def test_nor_is_it_with_other_cases(example, case):
-    assert doubts(example.Links(case), case) == [""] * 3
-
-
-@pytest.mark.parametrize("tuned", TUNED.values(), ids=TUNED)
-def test_nor_by_how_it_comes_to_rest(example, tuned):
-    links = example.Links(CASE)
+@pytest.mark.parametrize(
+    ("case", "choice", "tuned"),
+    [
+        *(pytest.param(CASE, choice, {}, id=name) for name, choice in SOUND.items()),
+        *(pytest.param(case, {}, {}, id=name) for name, case in OTHERS.items()),
+        *(pytest.param(CASE, {}, tuned, id=name) for name, tuned in TUNED.items()),
+    ],
+)
+def test_a_sound_engine_is_not_blamed(example, case, choice, tuned):
+    links = example.Links(case, **choice)
     vars(links).update(tuned)
-    assert doubts(links, CASE) == [""] * 3
+    assert doubts(links, case) == [""] * 3
 
 
 def reads(**changed: Callable) -> Callable:

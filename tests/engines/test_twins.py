@@ -1,6 +1,7 @@
 """Twins compute MuJoCo's chain: on a smooth obstacle to rounding, on a mesh to its facets."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -43,30 +44,29 @@ def short(of: str, stations: int) -> Case:
     return replace(case, sweep=replace(case.sweep, stations=stations))
 
 
+def equals_mujoco(name: str, case: Case, segments: int) -> None:
+    """A rest to 1e-8 EI/L, in either, is all that they may differ by."""
+    readings, snap_off = apart(name, case, replace(SMOOTH, segments=segments))
+    assert max(readings.values()) < 1e-8
+    assert abs(snap_off) < 1e-9
+
+
 @pytest.mark.parametrize("of", ["catenary", "parabola"])
 def test_the_twin_equals_mujoco_on_a_smooth_obstacle(name, of):
-    """A rest to 1e-8 EI/L, in either, is all that they may differ by."""
-    readings, snap_off = apart(name, short(of, 40), replace(SMOOTH, segments=20))
-    assert max(readings.values()) < 1e-8
-    assert abs(snap_off) < 1e-9
+    equals_mujoco(name, short(of, 40), 20)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("segments", [10, 20, 40, 80])
-@pytest.mark.parametrize("of", ["catenary", "parabola", "two-circles", "tip-only"])
-def test_so_it_does_with_links_of_any_size(name, of, segments):
-    readings, snap_off = apart(name, short(of, 30), replace(SMOOTH, segments=segments))
-    assert max(readings.values()) < 1e-8
-    assert abs(snap_off) < 1e-9
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("of", ["catenary", "parabola", "tip-only"])
-def test_so_it_does_where_its_forces_come_from_distances(name, of):
-    """8,000 spheres: in Drake as on a mesh, but the cylinder's normals are right to rounding."""
-    readings, snap_off = apart(name, short(of, 15), replace(SMOOTH, segments=160))
-    assert max(readings.values()) < 1e-8
-    assert abs(snap_off) < 1e-9
+@pytest.mark.parametrize(
+    ("of", "stations", "segments"),
+    [
+        *product(("catenary", "parabola", "two-circles", "tip-only"), [30], (10, 20, 40, 80)),
+        # 8,000 spheres: Drake's forces come from distances, as on a mesh.
+        *product(("catenary", "parabola", "tip-only"), [15], [160]),
+    ],
+)
+def test_so_it_does_with_links_of_any_size(name, of, stations, segments):
+    equals_mujoco(name, short(of, stations), segments)
 
 
 @pytest.mark.parametrize(
@@ -81,10 +81,7 @@ def test_so_it_does_where_its_forces_come_from_distances(name, of):
 def test_so_it_does_for_other_vibrissae(name, beam):
     scale = beam.length
     case = Case(beam, circle(scale, (0.0, 0.4 * scale)), clamp_stiffness=20 * beam.moment_unit)
-    case = replace(case, sweep=replace(case.sweep, stations=20))
-    readings, snap_off = apart(name, case, replace(SMOOTH, segments=12))
-    assert max(readings.values()) < 1e-8
-    assert abs(snap_off) < 1e-9
+    equals_mujoco(name, replace(case, sweep=replace(case.sweep, stations=20)), 12)
 
 
 def test_a_sweep_to_the_right_is_the_mirror_image(name):

@@ -38,6 +38,7 @@ from analytic import (
 from analytic.checks.integration import integrate_span
 from analytic.problem.contours.contour import Contour
 from analytic.solver.equilibria import equilibria
+from tests.fuzz.draws import log_uniform
 
 Placed: TypeAlias = Callable[[float], Contour]
 """A contour by the height of its lowest point."""
@@ -46,39 +47,34 @@ EXACT = 1e-11  # of the contact's position [L] and of angles [rad]
 HALF_TURN = np.pi / 2
 
 
-def size(rng, low, high):
-    """A length whose logarithm is uniform."""
-    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-
 def any_catenary(rng) -> Placed:
-    a = size(rng, 1e-3, 30)
+    a = log_uniform(rng, 1e-3, 30)
     return lambda low: catenary(a, low - 1)
 
 
 def any_parabola(rng) -> Placed:
-    a = size(rng, 1e-3, 100) if rng.random() < 0.9 else size(rng, 1e-12, 1e-3)
+    a = log_uniform(rng, 1e-3, 100) if rng.random() < 0.9 else log_uniform(rng, 1e-12, 1e-3)
     return lambda low: parabola(a, low)
 
 
 def any_circle(rng) -> Placed:
-    radius = size(rng, 1e-3, 10) if rng.random() < 0.8 else size(rng, 10, 1e6)
+    radius = log_uniform(rng, 1e-3, 10) if rng.random() < 0.8 else log_uniform(rng, 10, 1e6)
     x = rng.uniform(-2, 2)
     return lambda low: circle(radius, (x, low))
 
 
 def any_ellipse(rng) -> Placed:
     if rng.random() < 0.5:
-        axes = size(rng, 0.05, 10), size(rng, 0.05, 10)
+        axes = log_uniform(rng, 0.05, 10), log_uniform(rng, 0.05, 10)
     else:  # a needle
-        axes = size(rng, 1, 20), size(rng, 1e-3, 0.1)
+        axes = log_uniform(rng, 1, 20), log_uniform(rng, 1e-3, 0.1)
         axes = axes[:: rng.choice([-1, 1])]
     x = rng.uniform(-2, 2)
     return lambda low: ellipse(axes, (x, low))
 
 
 def any_two_circles(rng) -> Placed:
-    radii = size(rng, 0.03, 10), size(rng, 0.03, 10)
+    radii = log_uniform(rng, 0.03, 10), log_uniform(rng, 0.03, 10)
     if rng.random() < 0.2:
         radii = (8.1, 0.054)[:: rng.choice([-1, 1])]
     return lambda low: two_circles(*radii, (0.0, low))
@@ -86,7 +82,7 @@ def any_two_circles(rng) -> Placed:
 
 def any_exponential(rng) -> Placed:
     """y = b ((exp(k x) - 1)/k - x)/k."""
-    k, b = size(rng, 0.1, 5) * rng.choice([-1, 1]), size(rng, 0.1, 10)
+    k, b = log_uniform(rng, 0.1, 5) * rng.choice([-1, 1]), log_uniform(rng, 0.1, 10)
     steep = HALF_TURN - 1e-3
     pole = -np.arctan(b / k)
     ends = (pole + 1e-3, steep) if k > 0 else (-steep, pole - 1e-3)
@@ -133,7 +129,7 @@ def some_range(rng):
 
 
 def any_support(rng) -> Placed:
-    base, order = size(rng, 0.02, 5), np.arange(2, rng.integers(3, 12))
+    base, order = log_uniform(rng, 0.02, 5), np.arange(2, rng.integers(3, 12))
     share = rng.dirichlet(np.ones(len(order))) * rng.uniform(0, 0.98)
     wave, shift = base * share / (order**2 - 1), rng.uniform(0, 2 * np.pi, len(order))
     centre = rng.uniform(-2, 2)
@@ -155,7 +151,7 @@ def any_nearly_polygon(rng) -> Placed:
     """A sum of needles: smooth, with nearly straight sides and sharp turns."""
     count = rng.integers(2, 8)
     tilt = rng.uniform(0, np.pi, count)
-    a, b = np.exp(rng.uniform(np.log(0.1), np.log(3), count)), size(rng, 1e-3, 0.1)
+    a, b = np.exp(rng.uniform(np.log(0.1), np.log(3), count)), log_uniform(rng, 1e-3, 0.1)
 
     def parts(alpha):
         turned = np.subtract.outer(np.asarray(alpha, dtype=float), tilt)
@@ -178,9 +174,12 @@ def any_polygon(rng) -> Placed:
     if rng.random() < 0.5:
         corners = rng.integers(3, 60)
         turn = rng.uniform(0, 2 * np.pi) + 2 * np.pi * np.arange(corners) / corners
-        points = size(rng, 0.05, 3) * np.column_stack([np.cos(turn), np.sin(turn)])
+        points = log_uniform(rng, 0.05, 3) * np.column_stack([np.cos(turn), np.sin(turn)])
     else:
-        cloud = rng.normal(size=(rng.integers(5, 300), 2)) * [size(rng, 0.1, 3), size(rng, 0.1, 3)]
+        cloud = rng.normal(size=(rng.integers(5, 300), 2)) * [
+            log_uniform(rng, 0.1, 3),
+            log_uniform(rng, 0.1, 3),
+        ]
         points = cloud[ConvexHull(cloud).vertices]
     return lambda low: polygon(np.add(points, [0, low - points[:, 1].min()]))
 
@@ -212,9 +211,9 @@ NUDGES = (0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6)
 def any_case(kind: str, rng) -> Case:
     """A sweep along a contour of `kind`; a good part of them stops on an event or close to one."""
     placed = KINDS[kind](rng)
-    length = size(rng, 1e-2, 1e2) if rng.random() < 0.3 else 1.0
+    length = log_uniform(rng, 1e-2, 1e2) if rng.random() < 0.3 else 1.0
     radius = rng.uniform(0, 0.05) if rng.random() < 0.6 else 0.0
-    beam = Beam(length, size(rng, 1e-3, 1e3), radius * length)
+    beam = Beam(length, log_uniform(rng, 1e-3, 1e3), radius * length)
 
     def body(height):
         return placed(height + radius).scaled(length)

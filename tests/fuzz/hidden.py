@@ -29,6 +29,7 @@ from analytic import (
     solve_sweep,
 )
 from compare import compare
+from tests.fuzz.draws import log_uniform
 
 FORCES = CLAMP_READINGS[:2]
 _VISIBLE = 3.0
@@ -40,7 +41,7 @@ Act: TypeAlias = Callable[[Table, np.random.Generator], Table]
 
 def _size(rng: np.random.Generator, low: float, high: float) -> float:
     """Of either sign, evenly spread in its logarithm."""
-    return float(np.exp(rng.uniform(np.log(low), np.log(high))) * rng.choice([-1, 1]))
+    return float(log_uniform(rng, low, high) * rng.choice([-1, 1]))
 
 
 def _largest(values: pd.Series) -> float:

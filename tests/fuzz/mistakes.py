@@ -119,6 +119,11 @@ def _columns(sweep: Readings, **columns: np.ndarray) -> Readings:
     return replace(sweep, table=sweep.table.assign(**columns))
 
 
+def _on(name: str, act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
+    """A mistake in a column of that name."""
+    return lambda sweep, rng: _columns(sweep, **{name: act(sweep.values(name), rng)})
+
+
 def _one(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
     """A mistake in one reading, drawn at random."""
 
@@ -140,8 +145,8 @@ def _largest(values: np.ndarray) -> float:
     return float(np.abs(values).max())
 
 
-def _offset(sweep: Readings, rng: np.random.Generator) -> Readings:
-    return _columns(sweep, foot_x=sweep.values("foot_x") + _between(rng, 0.01, 0.03))
+def _gain(low: float, high: float) -> Callable[[np.ndarray, np.random.Generator], np.ndarray]:
+    return lambda values, rng: values * (1 + _between(rng, low, high))
 
 
 def _zero(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -183,12 +188,6 @@ def _rows(sweep: Readings, rows: Iterable[int]) -> Readings:
 
 def _reversed(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _rows(sweep, range(len(sweep.table))[::-1])
-
-
-def _backwards(sweep: Readings, rng: np.random.Generator) -> Readings:
-    """A stage that counts its way the other way, from an origin of its own or the world's."""
-    origin = rng.choice([0.0, rng.uniform(-0.5, 0.5)])
-    return _columns(sweep, foot_x=origin - sweep.values("foot_x"))
 
 
 def _shuffled(sweep: Readings, rng: np.random.Generator) -> Readings:
@@ -251,10 +250,6 @@ def _late(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _columns(sweep, **{name: _later(sweep.values(name), by) for name in CLAMP_READINGS})
 
 
-def _gain_and_zero(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    return _zero(values * (1 + _between(rng, 0.05, 0.3)), rng)
-
-
 def _cubic(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return values * (1 + _between(rng, 0.05, 0.3) * (values / _largest(values)) ** 2)
 
@@ -294,10 +289,6 @@ def _jittering(sweep: Readings, rng: np.random.Generator) -> Readings:
         sweep,
         **{n: np.interp(there, x[order], sweep.values(n)[order]) for n in CLAMP_READINGS},
     )
-
-
-def _stage(sweep: Readings, rng: np.random.Generator) -> Readings:
-    return _columns(sweep, foot_x=sweep.values("foot_x") * (1 + _between(rng, 0.01, 0.04)))
 
 
 def _raised(case: Case, rng: np.random.Generator) -> Readings:
@@ -343,10 +334,6 @@ def _both(first: Sensor, second: Sensor) -> Sensor:
     return lambda sweep, rng: second(first(sweep, rng), rng)
 
 
-def _on(name: str, act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
-    return lambda sweep, rng: _columns(sweep, **{name: act(sweep.values(name), rng)})
-
-
 def _coarse(sweep: Readings, rng: np.random.Generator) -> Readings:
     return with_own_error(sweep, rng, rng.uniform(0.01, 0.03))
 
@@ -373,6 +360,9 @@ class Mistake:
     stated: dict[str, float] = field(default_factory=dict)
 
 
+_OFFSET = _on("foot_x", lambda v, rng: v + _between(rng, 0.01, 0.03))
+# A stage that counts its way the other way, from an origin of its own or the world's.
+_BACKWARDS = _on("foot_x", lambda v, rng: rng.choice([0.0, rng.uniform(-0.5, 0.5)]) - v)
 MISTAKES: dict[str, Mistake] = {
     "flexural rigidity": Mistake("flexural rigidity", _beam("flexural_rigidity", 0.03, 0.3)),
     "length": Mistake("length of the vibrissa", _beam("length", 0.01, 0.03)),
@@ -383,8 +373,8 @@ MISTAKES: dict[str, Mistake] = {
     "friction stated": Mistake("friction", _held(friction=(0.3, 0.5)), stated={"friction": 0.2}),
     "natural curvature": Mistake("natural curvature", _curved),
     "taper": Mistake("tip radius", _tapered),
-    "offset of the stage": Mistake("foot_x", sensed=_offset),
-    "gain": Mistake("gain of", sensed=_one(lambda v, rng: v * (1 + _between(rng, 0.05, 0.3)))),
+    "offset of the stage": Mistake("foot_x", sensed=_OFFSET),
+    "gain": Mistake("gain of", sensed=_one(_gain(0.05, 0.3))),
     "zero": Mistake("zero of", sensed=_one(_zero)),
     "gravity": Mistake("constant load", sensed=_each(_zero)),
     "drift": Mistake("drift of", sensed=_one(_drifting)),
@@ -403,7 +393,7 @@ MISTAKES: dict[str, Mistake] = {
     "dead channel": Mistake("dead channel", sensed=_one(lambda v, rng: 0 * v)),
     "opposite direction": Mistake("opposite direction of travel", _opposite),
     "reversed rows": Mistake("rows reversed", recorded=_reversed),
-    "foot_x backwards": Mistake("foot_x counts the other way", recorded=_backwards),
+    "foot_x backwards": Mistake("foot_x counts the other way", recorded=_BACKWARDS),
     "shuffled rows": Mistake("rows out of order", recorded=_shuffled),
     "repeated rows": Mistake("repeat the row before", recorded=_repeated),
     "gap": Mistake("lack a number", recorded=_lost(np.nan)),
@@ -417,25 +407,27 @@ MISTAKES: dict[str, Mistake] = {
     "delay of one": Mistake("lags", sensed=_one(lambda v, rng: _later(v, rng.uniform(2, 6)))),
     "delay of all": Mistake("or a lag", sensed=_late),
     "drift of all": Mistake("drift of all", sensed=_each(_drifting)),
-    "gain and zero": Mistake("gain of & zero of", sensed=_one(_gain_and_zero)),
+    "gain and zero": Mistake(
+        "gain of & zero of", sensed=_one(lambda v, rng: _zero(_gain(0.05, 0.3)(v, rng), rng))
+    ),
     "cubic": Mistake("cubic", sensed=_one(_cubic)),
     "crosstalk": Mistake("crosstalk", sensed=_crosstalk),
     "hum": Mistake("hum", sensed=_humming),
     "steps": Mistake("quantised", recorded=_one(_stepped)),
     "jitter of the foot": Mistake("jitter", sensed=_jittering),
-    "scale of the stage": Mistake("scale of the stage", sensed=_stage),
+    "scale of the stage": Mistake("scale of the stage", sensed=_on("foot_x", _gain(0.01, 0.04))),
     "object raised": Mistake("height of the object", _raised),
     "contact ends early": Mistake("ends early", recorded=_ended),
     "whole first cell": Mistake("half a cell", _whole_first_cell),
     "rigid first half cell": Mistake("rigid over its first", _rigid_first_half),
     "rigidity and friction": Mistake("flexural rigidity & friction", _softer_and_rubbing),
     "soft clamp and offset": Mistake(
-        "clamp stiffness & foot_x", _held(clamp_stiffness=(5.0, 20.0)), sensed=_offset
+        "clamp stiffness & foot_x", _held(clamp_stiffness=(5.0, 20.0)), sensed=_OFFSET
     ),
     "gain and drift": Mistake(
         "gain of force_y & drift of moment_z",
         sensed=_both(
-            _on("force_y", lambda v, rng: v * (1 + _between(rng, 0.05, 0.3))),
+            _on("force_y", _gain(0.05, 0.3)),
             _on("moment_z", _drifting),
         ),
     ),

@@ -46,6 +46,7 @@ from analytic import (
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.layout import OF_CURVATURE, bead_spacing
 from mujoco_models.obstacles.kinds import place
+from tests.fuzz.draws import log_uniform
 
 USUAL = ("round", "needle", "small", "smooth", "polygon", "mesh")
 KINDS = (*USUAL, "mixed")
@@ -107,19 +108,15 @@ def _drawn(kind: str, draw: np.random.Generator, file: Path, wide: bool) -> Tria
         "smooth": _smooth, "polygon": _polygon, "mixed": _mixed,
         "mesh": lambda d, h: _mesh(d, h, file),
     }[kind](draw, height)  # fmt: skip
-    beam = Beam(radius=float(np.exp(draw.uniform(np.log(0.001), np.log(0.012)))))
+    beam = Beam(radius=log_uniform(draw, 0.001, 0.012))
     settings = Settings(
         beam=str(draw.choice(available_beams())),  # type: ignore[arg-type]
-        segments=_spread(draw, 5, 120) if wide else int(draw.integers(10, 121)),
-        contour_points=int(np.exp(draw.uniform(np.log(100), np.log(5000)))),
-        contact_stiffness=float(np.exp(draw.uniform(np.log(1e4), np.log(5e7)))),
+        segments=int(log_uniform(draw, 5, 120)) if wide else int(draw.integers(10, 121)),
+        contour_points=int(log_uniform(draw, 100, 5000)),
+        contact_stiffness=log_uniform(draw, 1e4, 5e7),
     )
-    stations = _spread(draw, 3, 200) if wide else int(draw.choice([12, 30, 60, 120]))
+    stations = int(log_uniform(draw, 3, 200)) if wide else int(draw.choice([12, 30, 60, 120]))
     return Trial(kind, Case(beam=beam, profile=profile, sweep=Sweep(stations)), settings)
-
-
-def _spread(draw: np.random.Generator, low: float, high: float) -> int:
-    return int(np.exp(draw.uniform(np.log(low), np.log(high))))
 
 
 def _round(draw: np.random.Generator, height: float) -> Contour:
@@ -133,11 +130,11 @@ def _needle(draw: np.random.Generator, height: float) -> Contour:
 
 
 def _small(draw: np.random.Generator, height: float) -> Contour:
-    return circle(float(np.exp(draw.uniform(np.log(0.002), np.log(0.1)))), (0.0, height))
+    return circle(log_uniform(draw, 0.002, 0.1), (0.0, height))
 
 
 def _smooth(draw: np.random.Generator, height: float) -> Contour:
-    kind, a = int(draw.integers(3)), float(np.exp(draw.uniform(np.log(0.2), np.log(3))))
+    kind, a = int(draw.integers(3)), log_uniform(draw, 0.2, 3)
     if kind == 0:
         return catenary(a, height - 1)
     if kind == 1:
@@ -168,7 +165,7 @@ def _smooth(draw: np.random.Generator, height: float) -> Contour:
 
 
 def _polygon(draw: np.random.Generator, height: float) -> Contour:
-    corners = round(float(np.exp(draw.uniform(np.log(3), np.log(200)))))
+    corners = round(log_uniform(draw, 3, 200))
     angles = np.sort(draw.uniform(0, 2 * np.pi, corners)) if draw.random() < 0.5 else (
         2 * np.pi * np.arange(corners) / corners + draw.uniform(0, 6.28)
     )  # fmt: skip
@@ -186,7 +183,7 @@ def _mixed(draw: np.random.Generator, height: float) -> Contour:
     sides = []
     for here, there in zip(ends, np.roll(ends, -1, axis=0), strict=True):
         along = np.sort(draw.random(int(draw.integers(0, 12))))[:, None]
-        bow = 0.0 if draw.random() < 0.3 else float(np.exp(draw.uniform(np.log(1e-7), np.log(0.1))))
+        bow = 0.0 if draw.random() < 0.3 else log_uniform(draw, 1e-7, 0.1)
         outward = np.array([there[1] - here[1], here[0] - there[0]])
         sides.append(here + along * (there - here) + bow * along * (1 - along) * outward)
     points = np.concatenate([x for pair in zip(ends[:, None], sides, strict=True) for x in pair])
@@ -197,7 +194,7 @@ def _mixed(draw: np.random.Generator, height: float) -> Contour:
 
 
 def _mesh(draw: np.random.Generator, height: float, file: Path) -> Contour:
-    size = float(np.exp(draw.uniform(np.log(0.15), np.log(1.2))))
+    size = log_uniform(draw, 0.15, 1.2)
     kind = int(draw.integers(5))
     body = (
         trimesh.creation.box(extents=[size, size, 1]),
