@@ -13,32 +13,18 @@ from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
     SAFETY,
+    Account,
     Parted,
     Shared,
-    Term,
-    as_uncertain,
     by_reading,
     common_stations,
-    extrapolated,
     observed_order,
-    parts_of,
-    unexplained,
 )
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
 from compare.measure.disagreement import rms
 from compare.sense.noise import scales
 
-PARTS = (
-    "discretisation",
-    "facets",
-    "softness",
-    "corner",
-    "unrest",
-    "sensor",
-    "extension",
-    "unexplained",
-)
 REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
 UNRESOLVED = 1e-5
@@ -82,80 +68,59 @@ def budget(
     faceted: Readings | None = None,
 ) -> Budget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
-    kept = common_stations(exact, [*runs.values()])
+    kept = common_stations(exact, runs.values())
     # One that is varied may touch again, or stick, where the reference does not.
     for varied in variations.values():
         kept &= np.isfinite([varied.values(name) for name in CLAMP_READINGS]).all(axis=0)
-    shared = Shared(exact, kept)
-    run = {name: shared.signal(readings) for name, readings in runs.items()}
+    account = Account(shared := Shared(exact, kept), runs)
+    run, base, thickness = account.run, runs["base"], exact.beam.radius / exact.beam.length
     signatures = {name: shared.off(varied) for name, varied in variations.items()}
-    base, beam = runs["base"], exact.beam
     order = observed_order(
         run["stiff"] - run["two"], run["two"] - run["four"], nominal=2.0, least=_LEAST_ORDER
     )
-    contact = exact.values("contact_arc_length")[kept] / beam.length
-    tangent = (exact.table["phase"] == "tangent").to_numpy()[kept] & np.isfinite(contact)
-    power: Floats = 0.5 ** (order * np.arange(3.0))
-    refined, joints = [run[name] for name in REFINED], _joints(runs)
-    if joints is not None:
-        refined = without_oscillation(refined, joints, contact, tangent, power)
-    limit, doubt = _limit(refined, power)
-    _, middle, finest = refined
-    from_two = finest + (finest - middle) / (2**order - 1)
-    # Only an order that is seen makes the limit better than the finest of the three.
-    seen = abs(order - round(order)) < _SEEN
-    beyond = SAFETY * (rms(limit - from_two) + (0 if seen else rms(finest - limit)))
-    hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
+    limit, beyond = _limit(account, runs, exact, order)
+    account.add("discretisation", run["stiff"] - limit, beyond)
     unrest = run["base"] - run["calm"]
+    account.add("facets", run["calm"] - run["smooth"], rms(unrest))
+    hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
     # As segments are refined, nothing is left of the load's hand-over from bead to bead.
-    still = shifted_inward(signatures, _sunk(runs["stiff"], shared), beam.radius / beam.length)
-    steps: dict[str, Term] = {
-        "discretisation": (
-            run["stiff"] - limit,
-            np.hypot(beyond, doubt),
-        ),
-        "facets": (run["calm"] - run["smooth"], rms(unrest)),
-        "softness": (run[hard] - run["stiff"] + still, rms(still)),
-        "unrest": as_uncertain(unrest),
-        # What is out of balance shows in the sensors, too: that is unrest, and counted there.
-        "sensor": as_uncertain(_sensor(runs["calm"], shared)),
-        "extension": as_uncertain(stretched(signatures, base.values("extension")[kept])),
-    }
+    still = shifted_inward(signatures, _sunk(runs["stiff"], shared), thickness)
+    account.add("softness", run[hard] - run["stiff"] + still, rms(still))
     if "sharp" in run:  # linear in the edges' radius
-        steps["corner"] = extrapolated(run["smooth"], run["sharp"], SHARPER)
-    total = shared.off(base)
-    rest, unsure = steps["unexplained"] = unexplained(total, steps)
-    unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(total)
-    within = bool((rms(rest) <= unresolved).all())
+        account.add_extrapolated("corner", run["smooth"], run["sharp"], SHARPER)
+    account.add_uncertain("unrest", unrest)
+    # What is out of balance shows in the sensors, too: that is unrest, and counted there.
+    account.add_uncertain("sensor", _sensor(runs["calm"], shared, exact))
+    account.add_uncertain("extension", stretched(signatures, base.values("extension")[kept]))
+    left, unsure = account.settle()
+    unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(account.total)
+    within = bool((left <= unresolved).all())
     resolved = bool(
-        (rms(rest) <= np.hypot(SMALL, _LEFT * whole)).all()
+        (left <= np.hypot(SMALL, _LEFT * whole)).all()
         and (unsure <= np.hypot(SMALL, _UNSURE * whole)).all()
     )
     phase = exact.table["phase"].to_numpy()[kept]
-    shifted = shifted_inward(signatures, _sunk(base, shared), beam.radius / beam.length)
-    checks = {"softness": shifted}
+    checks = {"softness": shifted_inward(signatures, _sunk(base, shared), thickness)}
     if faceted is not None:
         # A vibrissa curved towards the object touches a straight facet twice, with no readings.
         solved = common_stations(exact, [faceted])[kept]
         if solved.any():
             checks["facets"] = shared.off(faceted)[:, solved]
-    parts = parts_of(PARTS, steps)
+    rest, _ = account.terms["unexplained"]
     return Budget(
-        parts=parts,
-        disagreement=by_reading(total),
+        **account.common(),
         order=order,
         closes=within and resolved,
-        blame=max(parts, key=lambda name: float(np.linalg.norm(rms(steps[name][0])))),
-        stations=int(kept.sum()),
+        blame=account.blame(),
         by_phase={
             name: {
                 reading: {str(p): float(rms(row[phase == p])) for p in np.unique(phase)}
                 for reading, row in zip(CLAMP_READINGS, signal, strict=True)
             }
-            for name, (signal, _) in steps.items()
+            for name, (signal, _) in account.terms.items()
         },
         suspects=suspects(rest, signatures, float(np.linalg.norm(unresolved))),
-        convergence=convergence(exact, [runs[name] for name in REFINED], kept),
+        convergence=convergence(shared, [runs[name] for name in REFINED]),
         checks={name: by_reading(check) for name, check in checks.items()},
         undecided=within and not resolved,
     )
@@ -163,8 +128,7 @@ def budget(
 
 def largest_rms(exact: Readings, candidate: Readings) -> float:
     """The largest of the three readings' disagreements, as a budget counts it."""
-    kept = common_stations(exact, [candidate])
-    return float(rms(Shared(exact, kept).off(candidate)).max())
+    return float(rms(Shared.of(exact, candidate).off(candidate)).max())
 
 
 def _sunk(run: Readings, shared: Shared) -> Floats:
@@ -172,13 +136,29 @@ def _sunk(run: Readings, shared: Shared) -> Floats:
     return np.asarray(run.values("penetration")[shared.kept] / run.beam.length)
 
 
-def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:
-    """Where each refined sweep's joints are, if all of them say so [L]."""
-    recorded = [runs[name].provenance.get("joints") for name in REFINED]
-    return None if None in recorded else [np.array(joints, dtype=float) for joints in recorded]
+def _limit(
+    account: Account, runs: Mapping[str, Readings], exact: Readings, order: float
+) -> tuple[Floats, Floats]:
+    """What the sweeps tend to as segments are refined, and how uncertain that is."""
+    refined: list[Floats] = [account.run[name] for name in REFINED]
+    power: Floats = 0.5 ** (order * np.arange(3.0))
+    joints = [runs[name].provenance.get("joints") for name in REFINED]
+    if None not in joints:
+        kept = account.shared.kept
+        contact = exact.values("contact_arc_length")[kept] / exact.beam.length
+        tangent = (exact.table["phase"] == "tangent").to_numpy()[kept] & np.isfinite(contact)
+        at = [np.array(each, dtype=float) for each in joints]
+        refined = without_oscillation(refined, at, contact, tangent, power)
+    limit, doubt = _fitted_limit(refined, power)
+    _, middle, finest = refined
+    from_two = finest + (finest - middle) / (2**order - 1)
+    # Only an order that is seen makes the limit better than the finest of the three.
+    seen = abs(order - round(order)) < _SEEN
+    beyond = SAFETY * (rms(limit - from_two) + (0 if seen else rms(finest - limit)))
+    return limit, np.hypot(beyond, doubt)
 
 
-def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
+def _fitted_limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     """What the sweeps tend to as segments are refined, and how unsure the three of them leave that.
 
     Richardson's extrapolation, from all three. What still oscillates in them, as the contact passes
@@ -196,7 +176,7 @@ def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     return np.asarray(limit), np.asarray(_COVERS * errors * np.linalg.norm(weights * power))
 
 
-def _sensor(run: Readings, shared: Shared) -> Floats:
+def _sensor(run: Readings, shared: Shared, exact: Readings) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
-    sizes = units(run.beam, CLAMP_READINGS) / [*scales(shared.exact).values()]
+    sizes = units(run.beam, CLAMP_READINGS) / [*scales(exact).values()]
     return np.asarray(sizes[:, None] * run.values("discrepancy")[shared.kept])

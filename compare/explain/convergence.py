@@ -1,24 +1,18 @@
 """How the disagreement falls as the beam's segments are refined."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.problem.arrays import Booleans
 from compare.explain.parts import Shared, by_reading
 
 
-def convergence(
-    exact: Readings, runs: Iterable[Readings], kept: Booleans
-) -> dict[int, dict[str, float]]:
-    """Disagreement with `exact` at each number of segments, which the sources record."""
-    found = {}
-    for readings in runs:
-        segments = readings.provenance.get("settings", {}).get("segments")
-        if segments is not None:
-            found[int(segments)] = by_reading(Shared(exact, kept).off(readings))
-    return found
+def convergence(shared: Shared, runs: Sequence[Readings]) -> dict[int, dict[str, float]]:
+    """Disagreement at each number of segments, which the sources record."""
+    segments = [run.provenance.get("settings", {}).get("segments") for run in runs]
+    pairs = zip(segments, runs, strict=True)
+    return {int(n): by_reading(shared.off(run)) for n, run in pairs if n is not None}
 
 
 def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:

@@ -7,36 +7,13 @@ import numpy as np
 
 from analytic import Readings
 from compare.explain.budget import SMALL
-from compare.explain.parts import (
-    SAFETY,
-    Parted,
-    Shared,
-    Term,
-    as_uncertain,
-    by_reading,
-    common_stations,
-    extrapolated,
-    observed_order,
-    parts_of,
-    unexplained,
-)
+from compare.explain.parts import SAFETY, Account, Parted, Shared, observed_order
 from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
 from mujoco_models.user_model.names import OwnModel
 
 OPTIONAL = ("undamped", "ours", "newton", "stiff")
 """Sweeps without which a budget has one part less."""
-PARTS = (
-    "rate",
-    "damping",
-    "time step",
-    "contact model",
-    "softness",
-    "solver",
-    "beam",
-    "at rest",
-    "unexplained",
-)
 THREE_SPEEDS = ("quarter", "half", "base", "double", "fourfold")
 """The three sweeps of a budget that differ in speed are next to each other here, slowest first."""
 _LEAST_ORDER = 0.5  # in the speed: of the dampers' moment one, of inertia two, of bounces less
@@ -49,7 +26,7 @@ _LEFT = 0.1  # of the disagreement; what may stay unexplained
 class MotionBudget(Parted):
     """What the disagreement of a sweep in motion with the closed form is made of.
 
-    Its parts are those of `PARTS` that there are sweeps for: ``damping``, in proportion to the
+    Its parts are those that there are sweeps for: ``damping``, in proportion to the
     damping ratio; ``rate``, what else a slower sweep does not have; ``time step``, what a shorter
     one does not have; ``contact model``, of the user's contacts instead of ours; ``softness``, of
     ours in a user's model instead of hard ones; ``solver``, of another one than Newton's, or of its
@@ -108,48 +85,40 @@ def motion_budget(
     of_our_chain: bool = False,
 ) -> MotionBudget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
-    kept = common_stations(exact, [*runs.values()])
-    shared = Shared(exact, kept)
-    run = {name: shared.signal(readings) for name, readings in runs.items()}
+    shared = Shared.of(exact, *runs.values())
+    account = Account(shared, runs)
+    run = account.run
     slow, middle, fast = (run[name] for name in THREE_SPEEDS if name in run)
     last = run["quarter" if "quarter" in run else "fourfold"]
-    coarse, fine = fast - middle, middle - slow
-    order = observed_order(coarse, fine, nominal=1.0, least=_LEAST_ORDER)
-    limit = slow - fine / (2**order - 1)
-    steps: dict[str, Term] = {"rate": (run["base"] - limit, SAFETY * rms(slow - limit))}
+    order = observed_order(fast - middle, middle - slow, nominal=1.0, least=_LEAST_ORDER)
+    limit = slow - (middle - slow) / (2**order - 1)
+    rate, slowest = run["base"] - limit, SAFETY * rms(slow - limit)
+    # As much again of damping as was measured is extrapolated, and as uncertain.
+    damped = run["base"] - run.get("undamped", run["base"])
+    account.add("rate", rate - 2 * damped, slowest)
     if "undamped" in run:
-        # As much again as was measured is extrapolated, and as uncertain.
-        damping = 2 * (run["base"] - run["undamped"])
-        steps["rate"] = steps["rate"][0] - damping, steps["rate"][1]
-        steps["damping"] = damping, np.zeros(3)
+        account.add("damping", 2 * damped)
     # Of first order, as its contacts are.
-    steps["time step"] = as_uncertain(2 * (last - run["fine"]))
-    for name, other in (("contact model", "ours"), ("solver", "newton")):
-        if other in run:
-            steps[name] = last - run[other], np.zeros(3)
+    account.add_uncertain("time step", 2 * (last - run["fine"]))
+    if "ours" in run:
+        account.add("contact model", last - run["ours"])
     if "stiff" in run:  # less what half the time step does
         softer = run.get("ours", last) - (last - run["fine"])
-        steps["softness"] = extrapolated(softer, run["stiff"], _STIFFER)
+        account.add_extrapolated("softness", softer, run["stiff"], _STIFFER)
+    if "newton" in run:
+        account.add("solver", last - run["newton"])
     if "beam" in run:
-        steps["beam"] = shared.off(runs["beam"]), np.zeros(3)
+        account.add("beam", shared.off(runs["beam"]))
     at_rest = shared.off(runs["rest"])
-    steps["at rest"] = as_uncertain(at_rest) if of_our_chain else (at_rest, np.zeros(3))
-    total = shared.off(runs["base"])
-    rest, unsure = steps["unexplained"] = unexplained(total, steps)
-    if "damping" in steps:  # what is rate and what damping does not matter to what is left
-        doubt = rms(run["base"] - run["undamped"])
-        steps["damping"] = steps["damping"][0], doubt
-        steps["rate"] = steps["rate"][0], np.hypot(steps["rate"][1], doubt)
-    allowed = np.hypot(SMALL, np.maximum(unsure, _LEFT * rms(total)))
-    sure = {
-        name: float(np.linalg.norm(np.maximum(rms(signal) - uncertainty, 0.0)))
-        for name, (signal, uncertainty) in steps.items()
-    }
+    account.add("at rest", at_rest, rms(at_rest) if of_our_chain else 0.0)
+    left, unsure = account.settle()
+    if "undamped" in run:  # what is rate and what damping does not matter to what is left
+        account.add("rate", rate - 2 * damped, np.hypot(slowest, rms(damped)))
+        account.add("damping", 2 * damped, rms(damped))
+    allowed = np.hypot(SMALL, np.maximum(unsure, _LEFT * rms(account.total)))
     return MotionBudget(
-        parts=parts_of(PARTS, steps),
-        disagreement=by_reading(total),
+        **account.common(),
         order=order,
-        closes=bool((rms(rest) <= allowed).all()),
-        blame=max(sure, key=sure.__getitem__),
-        stations=int(kept.sum()),
+        closes=bool((left <= allowed).all()),
+        blame=account.blame(sure=True),
     )

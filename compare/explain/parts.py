@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
 SAFETY = 1.25
 """Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
 what the finest grid says, and from what the two finest alone would make of it."""
-
-
-Term: TypeAlias = tuple[Floats, Floats]
-"""A part at every station, shape (3, stations), and how uncertain its root mean square is, (3,)."""
 
 
 @dataclass(frozen=True)
@@ -79,31 +75,93 @@ class Parted(Shown):
         return asdict(self)
 
 
-@dataclass(frozen=True)
 class Shared:
     """The stations that the sweeps of a budget share, seen from the exact one."""
 
-    exact: Readings
-    kept: Booleans  # shape (stations of the sweep,)
-
-    def __post_init__(self) -> None:
-        if not self.kept.any():
+    def __init__(self, exact: Readings, kept: Booleans) -> None:
+        if not kept.any():
             raise InputError(
                 "stations common to all sweeps of the budget",
                 0,
                 "some",
                 "see their status: a sweep that chatters has none",
             )
+        self.kept = kept  # shape (stations of the sweep,)
+        self._scales = scales(exact)
+        self.exact = self.signal(exact)
+
+    @classmethod
+    def of(cls, exact: Readings, *runs: Readings) -> Self:
+        """Those in contact and trusted in all of the sweeps."""
+        return cls(exact, common_stations(exact, runs))
 
     def signal(self, readings: Readings) -> Floats:
         """The clamp readings there, over their largest magnitudes, shape (3, stations)."""
         return np.stack(
-            [readings.values(name)[self.kept] / size for name, size in scales(self.exact).items()]
+            [readings.values(name)[self.kept] / size for name, size in self._scales.items()]
         )
 
     def off(self, readings: Readings) -> Floats:
         """What they are off by."""
-        return self.signal(readings) - self.signal(self.exact)
+        return self.signal(readings) - self.exact
+
+
+class Account:
+    """The disagreement of ``runs["base"]``, and the terms that it is taken apart into.
+
+    A term is what a part does at every station, shape (3, stations), and how uncertain its root
+    mean square is, (3,).
+    """
+
+    def __init__(self, shared: Shared, runs: Mapping[str, Readings]) -> None:
+        self.shared = shared
+        self.run = {name: shared.signal(readings) for name, readings in runs.items()}
+        self.total = shared.off(runs["base"])
+        self.terms: dict[str, tuple[Floats, Floats]] = {}
+
+    def add(self, name: str, signal: Floats, uncertainty: Floats | float = 0.0) -> None:
+        """A part, known to so much."""
+        self.terms[name] = signal, np.broadcast_to(uncertainty, len(signal))
+
+    def add_uncertain(self, name: str, signal: Floats) -> None:
+        """A part that is as uncertain as it is large."""
+        self.add(name, signal, rms(signal))
+
+    def add_extrapolated(self, name: str, more: Floats, less: Floats, factor: float) -> None:
+        """A part that falls in proportion, from two sweeps of which one has less by a factor."""
+        signal = (more - less) * factor / (factor - 1)
+        self.add(name, signal, SAFETY * rms(signal) / (factor - 1))
+
+    def settle(self) -> tuple[Floats, Floats]:
+        """The root mean square of what the parts leave, and how uncertain that is: as all parts."""
+        signals, uncertainties = zip(*self.terms.values(), strict=True)
+        rest = self.total - np.sum(signals, axis=0)
+        self.add("unexplained", rest, np.sqrt(np.sum(np.square(uncertainties), axis=0)))
+        return rms(rest), self.terms["unexplained"][1]
+
+    def blame(self, sure: bool = False) -> str:
+        """The part that dominates, or of which that much is sure."""
+        sizes = {
+            name: np.linalg.norm(np.maximum(rms(signal) - sure * unsure, 0.0))
+            for name, (signal, unsure) in self.terms.items()
+        }
+        return max(sizes, key=lambda name: float(sizes[name]))
+
+    def common(self) -> dict[str, Any]:
+        """What every budget has of it."""
+        return {
+            "parts": {
+                name: {
+                    reading: Part(*sizes)
+                    for reading, *sizes in zip(
+                        CLAMP_READINGS, rms(signal).tolist(), unsure.tolist(), strict=True
+                    )
+                }
+                for name, (signal, unsure) in self.terms.items()
+            },
+            "disagreement": by_reading(self.total),
+            "stations": int(self.shared.kept.sum()),
+        }
 
 
 def common_stations(
@@ -117,37 +175,6 @@ def common_stations(
     if exact.snap_off is not None:
         kept &= ~before_snap_off(exact, along, Occurrence(exact.snap_off, None), window)
     return kept
-
-
-def as_uncertain(signal: Floats) -> Term:
-    """A part that is as uncertain as it is large."""
-    return signal, rms(signal)
-
-
-def extrapolated(more: Floats, less: Floats, factor: float) -> Term:
-    """A part that falls in proportion, from two sweeps of which one has less of it by a factor."""
-    signal = (more - less) * factor / (factor - 1)
-    return signal, SAFETY * rms(signal) / (factor - 1)
-
-
-def unexplained(whole: Floats, steps: Mapping[str, Term]) -> Term:
-    """What the parts leave of a whole, as uncertain as all of them."""
-    signals, uncertainties = zip(*steps.values(), strict=True)
-    return whole - np.sum(signals, axis=0), np.sqrt(np.sum(np.square(uncertainties), axis=0))
-
-
-def parts_of(names: Iterable[str], steps: Mapping[str, Term]) -> dict[str, dict[str, Part]]:
-    """The parts by name and reading, those of the names that there are."""
-    return {
-        name: {
-            reading: Part(*sizes)
-            for reading, *sizes in zip(
-                CLAMP_READINGS, rms(steps[name][0]).tolist(), steps[name][1].tolist(), strict=True
-            )
-        }
-        for name in names
-        if name in steps
-    }
 
 
 def observed_order(coarse: Floats, fine: Floats, nominal: float, least: float) -> float:

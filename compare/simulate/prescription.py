@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic import Case, InputError, Readings
 from analytic.problem.mirror import leftward
-from compare.explain.parts import Shared, common_stations
+from compare.explain.parts import Shared
 from compare.measure.disagreement import rms
 from mujoco_models import simulate_sweep
 from mujoco_models.allowed import BeamKind
@@ -93,6 +93,5 @@ def _error(reference: Readings, moved: Readings) -> float:
 
     What chatters there, or has lost its contact, counts as it is.
     """
-    kept = common_stations(reference, [])
-    off = float(rms(Shared(reference, kept).off(moved)).max())
+    off = float(rms(Shared.of(reference).off(moved)).max())
     return math.inf if math.isnan(off) else off

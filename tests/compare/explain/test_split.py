@@ -8,6 +8,7 @@ import pytest
 from analytic import CLAMP_READINGS, Readings
 from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.fit import fitted
+from compare.explain.parts import Shared
 from compare.explain.split import Split, split
 from tests.compare.synthetic import BEAM, EXACT, TOUCHING, at_rest, pattern, scaled, solved
 
@@ -58,7 +59,9 @@ def test_the_disagreement_by_segments():
     """Relative to the largest magnitudes, over the stations that count alone."""
     runs = at_rest(order=2.0, discretisation=1e-2)
     here = TOUCHING & (np.arange(100) % 2 == 0)
-    by_segments = convergence(EXACT, [runs[name] for name in ("stiff", "two", "four")], here)
+    by_segments = convergence(
+        Shared(EXACT, here), [runs[name] for name in ("stiff", "two", "four")]
+    )
     assert set(by_segments) == {40, 80, 160}
     for segments, errors in by_segments.items():
         expected = (
@@ -67,13 +70,13 @@ def test_the_disagreement_by_segments():
             * np.sqrt(np.mean(pattern("discretisation")[:, here] ** 2, axis=1))
         )
         np.testing.assert_allclose([errors[n] for n in CLAMP_READINGS], expected, rtol=1e-9)
-    assert convergence(EXACT, [EXACT], here) == {}  # which says nothing of segments
+    assert convergence(Shared(EXACT, here), [EXACT]) == {}  # which says nothing of segments
 
 
 @pytest.mark.parametrize("order", [1.0, 1.7, 2.0])
 def test_the_order_is_the_slope_of_the_logarithms(order):
     runs = at_rest(order, discretisation=1e-2)
-    errors = convergence(EXACT, [runs[name] for name in ("four", "stiff", "two")], TOUCHING)
+    errors = convergence(Shared(EXACT, TOUCHING), [runs[n] for n in ("four", "stiff", "two")])
     assert fitted_orders(errors) == pytest.approx(dict.fromkeys(CLAMP_READINGS, order))
     bent = {n: dict.fromkeys(CLAMP_READINGS, e) for n, e in ((1, 1.0), (2, 0.5), (4, 0.125))}
     assert fitted_orders(bent)["force_x"] == pytest.approx(1.5)  # between 1 and 2
