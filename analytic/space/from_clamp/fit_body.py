@@ -329,7 +329,8 @@ def _estimates(
     found = {}
     for name, value in family.reported(numbers).items():
         slopes = [
-            (family.reported(numbers + step)[name] - family.reported(numbers - step)[name]) / (2 * _STEP)
+            (family.reported(numbers + step)[name] - family.reported(numbers - step)[name])
+            / (2 * _STEP)
             for step in _STEP * np.eye(len(numbers))
         ]
         half = DOUBLE_SIDED_95 * float(np.sqrt(slopes @ covariance @ np.array(slopes)))
