@@ -10,19 +10,14 @@ from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.model.spec import add_clamp_sensors, add_options, compiled
 
-CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
+_CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
 
 
 def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjModel:
-    """Beam and body with a bead on each link, clamp sensors, and a foot along its tangent."""
-    add_options(spec)
-    spec.option.ccd_iterations = CCD_ITERATIONS
-    spec.body(FOOT).quat = leaning(tangent)
+    """Beam and body with a bead on each link."""
+    stand(spec, links, tangent)
     for i in range(links):
-        body = spec.body(link_name(i))
-        (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
-        side.name = f"side{i}"
-        body.add_geom(
+        spec.body(link_name(i)).add_geom(
             name=f"bead{i}",
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             pos=[0, 1e-3, 0],  # at the origin MuJoCo takes it that it never leaves it
@@ -33,8 +28,22 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
             density=0,
             priority=1,
         )
-    add_clamp_sensors(spec)
     return compiled(spec)
+
+
+def stand(spec: mujoco.MjSpec, links: int, tangent: Floats) -> list[mujoco.MjsGeom]:
+    """A foot along its tangent with sensors at the clamp; the sides of its links, named."""
+    add_options(spec)
+    spec.option.ccd_iterations = _CCD_ITERATIONS
+    spec.body(FOOT).quat = leaning(tangent)
+    add_clamp_sensors(spec)
+    sides = []
+    for i in range(links):
+        geoms = spec.body(link_name(i)).geoms
+        (side,) = (g for g in geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
+        side.name = f"side{i}"
+        sides.append(side)
+    return sides
 
 
 def leaning(tangent: Floats) -> Floats:

@@ -34,12 +34,12 @@ from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
 from mujoco_models.dynamics.record import StationMeans
 from mujoco_models.dynamics.sweep import Drive, start_of
 from mujoco_models.model.parts import require_radius
-from mujoco_models.model.spec import add_clamp_sensors, add_options, compiled
+from mujoco_models.model.spec import compiled
 from mujoco_models.model.stations import engine
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.settings import SpatialSettings
-from mujoco_models.space.assembly import CCD_ITERATIONS, leaning
+from mujoco_models.space.assembly import stand
 from mujoco_models.space.bodies import add_body
 
 _AT_TIP = 1e-6  # of the last link's length
@@ -194,17 +194,12 @@ def _assemble(
     spec: mujoco.MjSpec, links: int, tangent: Floats, begin: Floats, onward: Floats, before: float
 ) -> None:
     """Sides that touch, sensors, and a carriage along the way."""
-    add_options(spec)
-    spec.option.ccd_iterations = CCD_ITERATIONS
+    for side in stand(spec, links, tangent):
+        side.conaffinity = side.condim = side.priority = 1
     foot = spec.body(FOOT_BODY)
-    foot.pos, foot.quat = begin - before * onward, leaning(tangent)
-    turn, axis = np.zeros(9), np.zeros(3)
+    foot.pos = begin - before * onward
+    turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, foot.quat)
     axis = turn.reshape(3, 3).T @ onward
     kind = mujoco.mjtJoint.mjJNT_SLIDE
     foot.add_joint(name="drive", type=kind, axis=axis, armature=CARRIAGE * MASS)
-    for i in range(links):
-        geoms = spec.body(link_name(i)).geoms
-        (side,) = (g for g in geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
-        side.name, side.conaffinity, side.condim, side.priority = f"side{i}", 1, 1, 1
-    add_clamp_sensors(spec)

@@ -63,55 +63,34 @@ def reconstruct_space(
     beam, tangent = readings.beam, readings.clamp_tangent
     require_plain("the reconstruction in space", beam)
     clamp = ClampInSpace.of(readings)
-    foot = clamp.foot
     units = np.repeat([beam.force_unit, beam.moment_unit], 3)
     known = component_noise(readings, noise)
-    on = felt(readings, known)
+    on = np.flatnonzero(felt(readings, known))
     deviation, stated = (
         np.array([sizes.get(name, 0.0) for name in COMPONENTS]) / units
         for sizes in (known, noise or {})
     )
-
-    points = np.full((len(foot), 3), np.nan)
-    normals, arc_length = points.copy(), np.full(len(foot), np.nan)
-    uncertainty, torsion, along_force, torsion_noise, along_noise = (
-        arc_length.copy() for _ in range(5)
-    )
-    phase = np.full(len(foot), "free", dtype=object)
-    if on.any():
-        loaded = clamp.at(on)
-        found = loaded.contacts()
-        there = (found[6] >= 0) & (found[6] <= LONGEST)
-        points[on], normals[on] = (
-            np.where(there, part, np.nan).T for part in (found[:3], found[3:6])
-        )
-        arc_length[on] = np.where(there, found[6], np.nan)
-        sizes = np.linalg.norm(loaded.moment, axis=1)
-        torsion[on] = loaded.moment @ tangent / sizes
-        along_force[on] = -(loaded.moment * found[3:6].T).sum(axis=1) / sizes
-        torsion_noise[on] = np.sqrt(tangent**2 @ deviation[3:] ** 2) / sizes
-        lever = loaded.moment / np.linalg.norm(loaded.force, axis=1)[:, None]
-        along_noise[on] = (
-            np.sqrt(lever**2 @ deviation[:3] ** 2 + found[3:6].T ** 2 @ deviation[3:] ** 2) / sizes
-        )
-        uncertainty[on], sine_spread = _spread(loaded, stated, seed)
-        tip = found[7] > np.maximum(_EXACT, _EXPLAINED * sine_spread)
-        phase[on] = np.where(there, np.where(tip, "tip", "tangent"), "free")
-    columns: dict[str, Floats] = dict(zip(FOOT, (foot * beam.length).T, strict=True))
-    columns |= dict(zip(CONTACT_POINT, (points * beam.length).T, strict=True))
-    columns |= dict(zip(NORMAL, normals.T, strict=True))
-    return pd.DataFrame(
-        {
-            **columns,
-            "contact_arc_length": arc_length * beam.length,
-            "phase": phase,
-            "uncertainty": uncertainty * beam.length,
-            "torsion": torsion,
-            "along_force": along_force,
-            "torsion_noise": torsion_noise,
-            "along_force_noise": along_noise,
-        }
-    )
+    loaded = clamp.at(on)
+    place, normal, arc_length, criterion = np.split(loaded.contacts(), [3, 6, 7])
+    there = (arc_length[0] >= 0) & (arc_length[0] <= LONGEST)
+    moment, size = loaded.moment, np.linalg.norm(loaded.moment, axis=1)
+    lever = moment / np.linalg.norm(loaded.force, axis=1)[:, None]
+    along_noise = lever**2 @ deviation[:3] ** 2 + normal.T**2 @ deviation[3:] ** 2
+    uncertainty, sine_spread = _spread(loaded, stated, seed)
+    tip = criterion[0] > np.maximum(_EXACT, _EXPLAINED * sine_spread)
+    columns = {
+        **dict(zip(CONTACT_POINT, np.where(there, place * beam.length, np.nan), strict=True)),
+        **dict(zip(NORMAL, np.where(there, normal, np.nan), strict=True)),
+        "contact_arc_length": np.where(there, arc_length[0] * beam.length, np.nan),
+        "phase": np.where(there, np.where(tip, "tip", "tangent"), "free"),
+        "uncertainty": uncertainty * beam.length,
+        "torsion": moment @ tangent / size,
+        "along_force": -(moment * normal.T).sum(axis=1) / size,
+        "torsion_noise": np.sqrt(tangent**2 @ deviation[3:] ** 2) / size,
+        "along_force_noise": np.sqrt(along_noise) / size,
+    }
+    feet = pd.DataFrame(dict(zip(FOOT, (clamp.foot * beam.length).T, strict=True)))
+    return feet.join(pd.DataFrame(columns, index=on)).fillna({"phase": "free"})
 
 
 def wrench_complaint(found: pd.DataFrame) -> str | None:
