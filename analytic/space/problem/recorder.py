@@ -1,9 +1,12 @@
 """The rows of a sweep in space, and the readings that they are."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 
+from analytic.numerics.walk import WalkEvent
 from analytic.problem.recorder import AnyRecorder
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
@@ -17,21 +20,24 @@ from analytic.space.problem.readings import (
 
 @dataclass
 class SpatialRecorder(AnyRecorder[SpatialReadings]):
-    """Its events are a list of what `analytic.numerics.walk` calls events."""
+    """Its events are what `analytic.numerics.walk` calls events."""
 
     case: SpatialCase
 
     def readings(self) -> SpatialReadings:
         """All rows, in the units of the case's beam."""
-        beam, way = self.case.beam, self.case.way
-        events = [
-            {
-                "kind": event.kind,
-                "travel": event.travel * beam.length,
-                "foot": (way.foot(event.travel) * beam.length).tolist(),
-            }
-            for event in sorted(self.events(), key=lambda event: event.travel)
-        ]
+        events = stated(self.case, self.events())
         columns = self._columns(("phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL))
         tangent, provenance = self.case.path.clamp_tangent, self._provenance(events)
-        return SpatialReadings(pd.DataFrame(columns), beam, tangent, self.source, provenance)
+        return SpatialReadings(
+            pd.DataFrame(columns), self.case.beam, tangent, self.source, provenance
+        )
+
+
+def stated(case: SpatialCase, events: Iterable[WalkEvent]) -> list[dict[str, Any]]:
+    """Events as provenance has them, in the case's unit of length."""
+    way, length = case.way, case.beam.length
+    return [
+        {"kind": kind, "travel": at * length, "foot": (way.foot(at) * length).tolist()}
+        for kind, at in sorted(events, key=lambda event: event.travel)
+    ]

@@ -22,6 +22,7 @@ from analytic.space.problem.readings import (
     NORMAL,
     SpatialReadings,
 )
+from analytic.space.problem.recorder import stated
 from analytic.space.solver.contact import Contact, Scene
 from analytic.space.solver.rod import Plane
 from analytic.space.solver.rubbing import Rubbed, Rubbing
@@ -79,11 +80,7 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     table = pd.DataFrame(rows, columns=[*_COLUMNS, *(_RUBBED if case.friction else ())])
     foot = dict(zip(FOOT, case.path.at(travel).T, strict=True))
     table = pd.concat([pd.DataFrame({"travel": travel, **foot}), table], axis=1)
-    events = [
-        {"kind": kind, "travel": at * length, "foot": (way.foot(at) * length).tolist()}
-        for kind, at in walked.events
-    ]
-    provenance = {**case.provenance(), "engine": _engine(), "events": events}
+    provenance = {**case.provenance(), "engine": _engine(), "events": stated(case, walked.events)}
     tangent = case.path.clamp_tangent
     readings = SpatialReadings(table, beam, tangent, "analytic", provenance)
     return _with_certificate(readings) if certified else readings

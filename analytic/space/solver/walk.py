@@ -93,7 +93,7 @@ class Walker(ABC, Generic[Held]):
             contacts.append(contact)
             known = contact is not None or station >= unknown_until
             statuses.append("ok" if known else status)
-        return Walked(contacts, statuses, sorted(self._events, key=lambda event: event.travel))
+        return Walked(contacts, statuses, self._events)
 
     @abstractmethod
     def _begin(self, travel: float) -> Held | None:

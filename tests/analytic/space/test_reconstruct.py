@@ -109,10 +109,25 @@ def test_the_noise_that_is_seen_is_that_which_is_there(readings):
     assert stated["force_x"] == exact["force_x"]
 
 
-def test_forces_that_act_nowhere_are_no_good_readings(readings):
-    opposite = {n: -readings.values(n) for n in (*FORCE, *MOMENT)}
-    complaint = wrench_complaint(reconstruct_space(changed(readings, **opposite)))
-    assert "signs" in complaint
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda force, moment, _: (-force, -moment), "signs"),
+        (lambda force, moment, _: (force, moment[:, ::-1]), "frame"),
+        (
+            lambda force, moment, tangent: (
+                force,
+                moment + 0.2 * np.linalg.norm(moment, axis=1)[:, None] * tangent,
+            ),
+            "along the clamp's tangent",
+        ),
+    ],
+)
+def test_what_no_such_vibrissa_feels_is_named(readings, change, says):
+    clamp = readings.values(*FORCE), readings.values(*MOMENT)
+    wrong = np.hstack(change(*clamp, readings.clamp_tangent))
+    columns = dict(zip((*FORCE, *MOMENT), wrong.T, strict=True))
+    assert says in wrench_complaint(reconstruct_space(changed(readings, **columns)))
 
 
 def test_a_frame_is_wrong_beyond_noise(readings):
@@ -122,16 +137,6 @@ def test_a_frame_is_wrong_beyond_noise(readings):
     turned = dict(zip(MOMENT, (x, -z, y), strict=True))
     found = reconstruct_space(changed(disturbed, **turned), noise)
     assert "frame" in wrench_complaint(found)
-
-
-def test_a_torsion_and_a_wrong_frame_are_named(readings):
-    moment = readings.values(*MOMENT)
-    size = np.linalg.norm(moment, axis=1)[:, None]
-    twisted = moment + 0.2 * size * readings.clamp_tangent
-    found = reconstruct_space(changed(readings, **dict(zip(MOMENT, twisted.T, strict=True))))
-    assert "along the clamp's tangent" in wrench_complaint(found)
-    swapped = dict(zip(MOMENT, (moment[:, 2], moment[:, 1], moment[:, 0]), strict=True))
-    assert "frame" in wrench_complaint(reconstruct_space(changed(readings, **swapped)))
 
 
 def test_friction_across_is_named(readings):
