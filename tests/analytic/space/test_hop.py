@@ -8,6 +8,9 @@ from scipy.optimize import minimize
 from analytic.space import FootPath, SpatialCase, polyhedron, solve_space
 from analytic.space.checks.rod import deflected_rods
 from analytic.space.problem.readings import CONTACT_POINT, FOOT
+from analytic.space.solver.contact import Scene
+from analytic.space.solver.stability import is_stable
+from analytic.space.solver.walk import Gliding
 
 LINKS, STIFF = 80, 1e6
 RADIUS = 0.005
@@ -48,6 +51,21 @@ def at_rest(body, tangent, foot, shape):
     links = found.x.reshape(-1, 3)
     along = links / np.linalg.norm(links, axis=1, keepdims=True)
     return found.fun, foot + along.sum(axis=0) / LINKS
+
+
+def test_a_tip_hops_where_its_face_ends():
+    body = polyhedron(trimesh.creation.icosphere(1, 1.0).vertices + np.array([0.0, 1.4, 0.0]))
+    case = SpatialCase(body=body, path=FootPath([[1.0, 0.65], [0.3, 0.65]], stations=2))
+    events = solve_space(case).provenance["events"]
+    place = next(event["travel"] for event in events if event["kind"] == "hop")
+    walker = Gliding(Scene(body, case.path.clamp_tangent, RADIUS), case.way)
+    before, after = walker.along(place + np.array([-1e-9, 1e-8])).contacts
+    point = before.spot.point
+    faces = np.unique(body.normals[np.abs(body.normals @ point - body.heights) < 1e-7], axis=0)
+    assert len(faces) == 2  # an edge
+    assert np.linalg.norm(after.spot.point - point) > 0.01
+    assert after.energy < before.energy
+    assert min(is_stable(one, RADIUS) for one in (before, after))
 
 
 @pytest.mark.slow
