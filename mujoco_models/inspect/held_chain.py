@@ -55,13 +55,16 @@ class HeldChain(HeldModel):
         """Where the tip is, shape (3,)."""
         return np.asarray(self._world(self.tip_in_body[None], self._tip_body)[0])
 
-    def turn_from_start(self) -> Floats:
-        """How its last link is turned from the model's own first state [rad], shape (3,)."""
-        start = mujoco.MjData(self.model)
-        mujoco.mj_kinematics(self.model, start)
-        turn, (was, now) = np.empty(3), (d.xquat[self._tip_body] for d in (start, self.data))
-        mujoco.mju_subQuat(turn, now, was)  # in the axes of what it is turned from
-        return np.asarray(start.xmat[self._tip_body].reshape(3, 3) @ turn)
+    def turn_by(self, load: Callable[[], None]) -> Floats:
+        """How far a load turns its last link from where it rests without one [rad], shape (3,)."""
+        self.unload()
+        was, axes = self.data.xquat[self._tip_body].copy(), self.axes_of(self._tip_body).copy()
+        load()
+        self.rest()
+        turn = np.empty(3)
+        mujoco.mju_subQuat(turn, self.data.xquat[self._tip_body], was)  # in its axes before
+        self.unload()
+        return np.asarray(axes @ turn)
 
     @property
     def clamp(self) -> Floats:

@@ -190,10 +190,8 @@ def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float
     """GJ over EI, by the turn of its tip under a moment along it; infinite if it cannot twist."""
     if isinstance(held, HeldRod):  # MuJoCo's flex has no torsion: its vertices do not turn
         return math.inf
-    held.load(np.zeros(3), held.small * rigidity / length * along)
-    held.rest()
-    twist = float(held.turn_from_start() @ along) / held.small
-    held.unload()
+    moment = held.small * rigidity / length * along
+    twist = float(held.turn_by(lambda: held.load(np.zeros(3), moment)) @ along) / held.small
     return 1 / twist if twist > _TWISTS else math.inf
 
 

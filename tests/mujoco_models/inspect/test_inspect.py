@@ -38,11 +38,16 @@ def test_where_it_first_bends_shows_in_its_first_cell(tmp_path, first):
     assert found.length == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(("torsion", "tilt"), [(0.1, 0.0), (0.8, 0.0), (0.1, 0.7)])
-def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt):
+@pytest.mark.parametrize(
+    ("torsion", "tilt", "at_rest"),
+    [(0.1, 0.0, 0.0), (0.8, 0.0, 0.0), (0.1, 0.7, 0.0), (0.8, 0.7, 0.01)],
+)
+def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt, at_rest):
+    """By a load: not by what it is twisted at rest."""
     path = Chain().write(tmp_path)
     bends = '<joint axis="0 0 1" stiffness="20.0"'
-    twists = f'<joint axis="0 1 0" stiffness="{20 * torsion}" damping="0.1"/>'
+    twists = f'<joint axis="0 1 0" stiffness="{20 * torsion}" damping="0.1" '
+    twists += f'springref="{at_rest}"/>'
     text = path.read_text().replace(bends, twists + bends)
     turned = text.replace('name="whisker-foot"', f'name="whisker-foot" euler="{tilt} 0.3 0"')
     path.write_text(turned)
