@@ -1,0 +1,35 @@
+"""Two causes are named only where they leave far less than one."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from compare.explain import one_or_two as module
+from compare.explain.fit import Explanation
+
+STATIONS = 30
+
+
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [(5.0, "a gain; 20% of the disagreement is left"), (20.0, "a gain and a zero")],
+)
+def test_two_must_leave_ten_times_less_than_one(monkeypatch, times, said):
+    """Of a disagreement whose square is 1, one cause leaves 0.04."""
+    true = np.zeros((3, STATIONS))
+    seen = np.full((3, STATIONS), np.sqrt(1 / (3 * STATIONS)))
+    fault = SimpleNamespace(signature=true, over=lambda known: fault, needs_contour=True)
+    alone = [Explanation("a gain", 0.04), Explanation("", 0.5)]
+    together = [Explanation("a gain and a zero", 0.04 / times, 2), Explanation("", 0.4, 2)]
+    monkeypatch.setattr(module, "physical_faults", lambda *_: [fault])
+    monkeypatch.setattr(module, "sensor_faults", lambda _: [])
+    monkeypatch.setattr(module, "misread", lambda *_: [])
+    monkeypatch.setattr(module, "_alone", lambda *_: alone)
+    monkeypatch.setattr(module, "_both", lambda *_: together)
+    table = pd.DataFrame({"at": np.linspace(1, -1, STATIONS)})
+    beam = SimpleNamespace(length=1.0)
+    found = SimpleNamespace(reference=SimpleNamespace(beam=beam))
+    text = module.one_or_two(found, table, true, seen, np.ones(3), np.zeros(3))
+    assert text == said
