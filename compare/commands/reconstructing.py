@@ -32,8 +32,10 @@ from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
+from compare.show.figures.space import sweep_in_space
 from compare.show.fits import object_document, object_summary
 from compare.show.numbers import quantity
+from compare.show.scene import SweepScene
 
 
 def read_in_space(file: Path, known: SpaceJob | None, rig: RigFiles) -> SpatialReadings:
@@ -58,6 +60,9 @@ def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: st
     with output_folder(place) as folder:
         terminal.show(*object_summary(fitted, sweeps[0].beam.si))
         terminal.keep(folder / "object.json", object_document(fitted))
+        with waiting("drawing"):
+            picture = sweep_in_space(SweepScene.of(sweeps[0], fitted.body))
+        terminal.keep(folder / "object.png", picture)
     return fitted.explains
 
 

@@ -153,7 +153,8 @@ def words(command: str, kind: str, option: str) -> tuple[list[str], list[str]]:
     """The command without the option, and the option."""
     start = INSTEAD.get((command, kind, option), TAKES[command][kind])
     value = "other.toml" if option == "--beam" and command not in ("run", "view") else None
-    value = "circle" if (command, option) == ("reconstruct", "--fit") else value
+    if (command, option) == ("reconstruct", "--fit"):
+        value = "sphere" if kind == SPACE else "circle"
     given = [option] if is_flag(command, option) else [option, value or VALUES[option]]
     return [command, *start], given
 
