@@ -59,9 +59,9 @@ class HeldModel:
             np.linalg.norm(model.body_pos[list(parts.chain)], axis=1).sum(),
         )  # fmt: skip
         length = float(self.units.max())
-        self.model.dof_armature[heavy] += (
-            _HEAVY * self._masses.sum() * (length / self.units[heavy]) ** 2
-        )
+        with np.errstate(over="ignore"):  # what is without bounds is refused as it vibrates
+            heaviest = _HEAVY * self._masses.sum() * (length / self.units[heavy]) ** 2
+        self.model.dof_armature[heavy] += heaviest
         self.data = mujoco.MjData(self.model)
         self._force, self._torque = np.zeros((2, 3))
 

@@ -210,14 +210,20 @@ class HeldChain(HeldModel):
         turns = self._turns(axes[2])
         links = turns @ flexibility @ turns[-1]  # turns under a unit moment on the tip
         way = axes[0] @ self._moves()
-        squares, modes = eigh(stiffness, self._inertia(armature=True))
+        inertias = [self._inertia(armature) for armature in (True, False)]
+        try:
+            (squares, modes), (bare, _) = (eigh(stiffness, inertia) for inertia in inertias)
+        except (np.linalg.LinAlgError, ValueError) as error:  # of no inertia, or of an infinite one
+            raise InputError(
+                "masses of the vibrissa", "such that it has no vibrations",
+                "positive, and not 1e15 times apart", "correct masses, densities and sizes",
+            ) from error  # fmt: skip
         if not squares[0] > 0:
             raise InputError(
                 self._body_of(int(np.argmax(np.abs(modes[:, 0])))),
                 "pushed away from its place by its own spring", "held there",
                 "give its joint a positive stiffness",
             )  # fmt: skip
-        bare = eigh(stiffness, self._inertia(armature=False), eigvals_only=True)
         return Bending(
             compliances=np.diff(links, prepend=0.0),
             tip_compliance=float(way @ flexibility @ way),

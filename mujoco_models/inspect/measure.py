@@ -34,6 +34,7 @@ _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 de
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
+_LONGEST = 1e60  # a first period: its fourth power is a number, too
 _WORLD = 0.999999  # cosine; along an axis of the world
 _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
 
@@ -72,7 +73,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
     period = float(2 * np.pi / np.sqrt(squares[0]))
-    if not (math.isfinite(period) and period > 0):
+    if not 1 / _LONGEST < period < _LONGEST:
         raise InputError(
             "model", f"with a first period of {period:g}", "one with a mass that its springs move",
             "correct the masses of the vibrissa and of what holds it",

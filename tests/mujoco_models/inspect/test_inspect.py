@@ -278,3 +278,13 @@ def test_what_is_no_model(tmp_path):
 def test_a_joint_without_a_usable_stiffness_is_named(tmp_path, stiffness, said):
     with pytest.raises(InputError, match=said):
         inspect_model(Chain(stiffer={5: stiffness}).write(tmp_path))
+
+
+@pytest.mark.parametrize("mass", ["1e300", "1e-290"])
+def test_masses_without_vibrations_are_a_line(tmp_path, mass):
+    path = Chain().write(tmp_path)
+    first = 'fromto="0 0 0 0 0.05 0" mass="'
+    before, after = path.read_text().split(first, 1)
+    path.write_text(before + first + mass + after[after.index('"') :])
+    with pytest.raises(InputError, match="mass|first period"):
+        inspect_model(path)
