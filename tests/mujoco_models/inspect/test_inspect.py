@@ -286,5 +286,5 @@ def test_masses_without_vibrations_are_a_line(tmp_path, mass):
     first = 'fromto="0 0 0 0 0.05 0" mass="'
     before, after = path.read_text().split(first, 1)
     path.write_text(before + first + mass + after[after.index('"') :])
-    with pytest.raises(InputError, match="mass|first period"):
+    with pytest.raises(InputError, match=r"mass|first period"):
         inspect_model(path)
