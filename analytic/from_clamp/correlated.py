@@ -29,6 +29,7 @@ _RANK = 1e-14  # of the largest eigenvalue: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
 _FINER = 4  # points of a periodogram for each of its own
 _SLOWEST = 5.0  # periods in all stations; what is slower is drift
+_FEWEST = 40  # stations; in fewer a line is not told from noise, and takes two of each channel
 _WIDTH = 3.0  # of a line, in periods in all stations
 _AROUND = 20.0  # the same: where the power beside a line is looked at
 
@@ -204,6 +205,8 @@ def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, F
 def _hum(left: Floats) -> float:
     """Stations in the period of a line in what plain least squares leave; 0 if there is none."""
     n = len(left)
+    if n < _FEWEST:
+        return 0.0
     left = left / np.maximum(left.std(), np.finfo(float).tiny)
     window = np.hanning(n)[:, None] * (left - left.mean(axis=0))
     power = (np.abs(np.fft.rfft(window, _FINER * n, axis=0)) ** 2).sum(axis=1)

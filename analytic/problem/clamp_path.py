@@ -111,6 +111,11 @@ class Whisk(TurningWay):
         the left is what a sweep to the left is, with the object on that side.
     stations : int
         Number of stations, from 2 to 1,000,000.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
 
     foot_x: float = 0.0

@@ -1,7 +1,6 @@
 """The object as a whole: the contour of a family that explains the clamp's readings best."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,8 @@ from analytic.from_clamp.calibration.calibrate import (
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.unknowns import Sought
-from analytic.from_clamp.correlated import Estimated, NoiseFound
+from analytic.from_clamp.correlated import Estimated
+from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.object.families import Family, families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
@@ -26,7 +26,6 @@ from analytic.problem.clamp_path import Sweep
 from analytic.problem.contours.families import circle
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
-from analytic.problem.shown import Shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,8 +36,8 @@ _BAND = 181  # points of the band
 _STEP = 1e-5  # of a number, for a derivative
 
 
-@dataclass(frozen=True, repr=False)
-class FittedObject(Shown):
+@dataclass(frozen=True, repr=False, kw_only=True)
+class FittedObject(Fitted):
     """An object of a family, as sweeps past it show it.
 
     Parameters
@@ -68,28 +67,9 @@ class FittedObject(Shown):
         `bic` and `explains` of each family that was tried.
     """
 
-    family: str
-    found: dict[str, Estimate]
     case: Case
     band: dict[str, Floats]
-    misfit: float
-    explains: bool
-    bic: float
-    stations: int
-    noise: NoiseFound
     passes: Consistency | None
-    rivals: dict[str, tuple[float, bool]]
-
-    def _tiles(self) -> dict[str, object]:
-        return {
-            self.family: "" if self.explains else "does not explain the readings",
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
-            "misfit": f"{self.misfit:.3g}",
-            "stations": self.stations,
-        }
 
     def _draw(self, figure: "Figure") -> None:
         ax = figure.subplots()
@@ -152,9 +132,7 @@ def fit_object(
         If there is no such family, too few contacts, or the readings are of no such vibrissa; with
         ``"auto"`` if no family explains them.
     """
-    if family not in (*FAMILIES, "auto"):
-        allowed = f"one of {', '.join(FAMILIES)}, auto"
-        raise InputError("family", repr(family), allowed, "choose one")
+    check_family(family, FAMILIES)
     passes = as_passes(readings)
     x, y, angles = _contacts(passes)
     known = families(angles)
@@ -170,22 +148,12 @@ def fit_object(
             tried[name] = fitted_to_noise(nearest, noise is not None)
         return tried[name]
 
-    if family == "auto":
-        found = []
-        for name in FAMILIES:
-            with suppress(InputError):  # one that the readings do not determine is none of them
-                found.append(_object(*fitted(name), angles))
-    else:
-        found = [_object(*fitted(family), angles)]
-    rivals = {one.family: (one.bic, one.explains) for one in found}
-    explaining = [one for one in found if one.explains]
-    if family == "auto" and not explaining:
-        best = (f", the best leaves {min(one.misfit for one in found):.3g} times the noise" if found
-                else "")  # fmt: skip
-        allowed = "one that explains the readings"
-        remedy = "several objects, a corner, friction, or a vibrissa that is not as stated"
-        raise InputError("family", f"none of them{best}", allowed, f"likely {remedy}")
-    return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)
+    return likeliest(
+        family,
+        FAMILIES,
+        lambda name: _object(*fitted(name), angles),
+        "several objects, a corner, friction, or a vibrissa that is not as stated",
+    )
 
 
 def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
@@ -253,20 +221,19 @@ def _object(
     stations = len(fit.measured.foot_x)
     data = fit.measured.readings.size
     return FittedObject(
-        fit.family.name,
-        found,
-        fit.sought(numbers).case,
-        {
+        family=fit.family.name,
+        found=found,
+        case=fit.sought(numbers).case,
+        band={
             name: long * x if name != "slope_angle" else x
             for name, x in _band(fit.family, numbers, known.covariance, angles).items()
         },
-        misfit,
-        explained_by_noise(misfit, data - len(kinds)),
-        -2 * known.likelihood + len(kinds) * float(np.log(data)),
-        stations,
-        known.noise,
-        alike,
-        {},
+        misfit=misfit,
+        explains=explained_by_noise(misfit, data - len(kinds)),
+        bic=-2 * known.likelihood + len(kinds) * float(np.log(data)),
+        stations=stations,
+        noise=known.noise,
+        passes=alike,
     )
 
 

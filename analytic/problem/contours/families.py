@@ -1,4 +1,4 @@
-"""Families of convex contours, closed forms by slope angle; what cannot be is an `InputError`."""
+"""Families of convex contours, closed forms by slope angle."""
 
 import math
 from typing import NamedTuple
@@ -27,6 +27,11 @@ def catenary(a: float, c: float) -> Profile:
     -------
     Profile
         For slope angles up to 1e-3 rad from the vertical.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
     a, c = positive("profile catenary.a", a), finite("profile catenary.c", c)
     return of_curve(_Catenary(a, c), _STEEPEST, f"catenary cosh({a:g} x) {c:+g}")
@@ -46,6 +51,11 @@ def parabola(a: float, c: float) -> Profile:
     -------
     Profile
         For slope angles up to 1e-3 rad from the vertical.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
     a, c = positive("profile parabola.a", a), finite("profile parabola.c", c)
     return of_curve(_Parabola(a, c), _STEEPEST, f"parabola {a:g} x^2 {c:+g}")
@@ -65,6 +75,11 @@ def circle(radius: float, lowest: tuple[float, float]) -> Profile:
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
     radius = positive("profile circle.radius", radius)
     point = pair("profile circle.lowest", lowest)
@@ -85,6 +100,11 @@ def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Prof
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
     across, upward = pair("profile ellipse.semi_axes", semi_axes)
     positive("profile ellipse.semi_axes[0]", across)
@@ -111,6 +131,11 @@ def two_circles(
     -------
     Profile
         For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
     right = positive("profile two_circles.right_radius", right_radius)
     left = positive("profile two_circles.left_radius", left_radius)

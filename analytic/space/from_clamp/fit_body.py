@@ -1,8 +1,7 @@
 """The body as a whole: that of a family which explains the clamp's six components best."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,11 +9,11 @@ from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.calibrate import Estimate, explained_by_noise
 from analytic.from_clamp.contact import LONGEST
-from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
+from analytic.from_clamp.correlated import Estimated, estimate
+from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.errors import InputError, require, unknown
-from analytic.problem.shown import Shown
+from analytic.problem.errors import InputError, require
 from analytic.problem.support import require_plain
 from analytic.space.from_clamp.families import Family, families
 from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BODY_FAMILIES = ("sphere", "ellipsoid", "cylinder")
-_FEWEST = 8  # contacts
+_FEWEST = 8  # contacts of each sweep: two more than an ellipsoid has numbers
 _LEAST = 1e-9  # of the largest force or moment; readings without noise count as of so much
 _ZERO = 1e-3  # of the same: what a sensor's zero is known to
 _FAINT = 0.02  # of the largest force: where a zero that drifts looks like a contact
@@ -39,8 +38,8 @@ _OFF = 0.03  # L; contacts that are farther off count for less
 _KNOWN_TO = 0.5  # L; a length that is known to less is not determined
 
 
-@dataclass(frozen=True, repr=False)
-class FittedBody(Shown):
+@dataclass(frozen=True, repr=False, kw_only=True)
+class FittedBody(Fitted):
     """A body of a family, as sweeps past it show it.
 
     Parameters
@@ -66,26 +65,7 @@ class FittedBody(Shown):
         `bic` and `explains` of each family that was tried.
     """
 
-    family: str
-    found: dict[str, Estimate]
     body: Body
-    misfit: float
-    explains: bool
-    bic: float
-    stations: int
-    noise: NoiseFound
-    rivals: dict[str, tuple[float, bool]]
-
-    def _tiles(self) -> dict[str, object]:
-        return {
-            self.family: "" if self.explains else "does not explain the readings",
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
-            "misfit": f"{self.misfit:.3g}",
-            "stations": self.stations,
-        }
 
     def _draw(self, figure: "Figure") -> None:
         ax = figure.subplots()
@@ -180,8 +160,7 @@ def fit_body(
         If there is no such family, too few contacts, the vibrissa is not straight and uniform, or
         the readings do not determine such a body; with ``"auto"`` if no family explains them.
     """
-    if family not in (*BODY_FAMILIES, "auto"):
-        raise unknown("family", family, (*BODY_FAMILIES, "auto"))
+    check_family(family, BODY_FAMILIES)
     sweeps = list(readings) if isinstance(readings, Sequence) else [readings]
     for one in sweeps:
         require("readings", one, SpatialReadings, "as read_space gives them")
@@ -191,27 +170,21 @@ def fit_body(
                 "readings", "of different vibrissae", "of one", "fit each on its own"
             )  # fmt: skip
     passes = [_contacts(one, noise) for one in sweeps]
+    fewest = min(len(one.tip) for one in passes)
+    if fewest < _FEWEST:
+        remedy = "take more stations along the body, or leave the sweep out"
+        raise InputError("contacts of a sweep", fewest, f"{_FEWEST} or more", remedy)
     found = np.concatenate([one.clamp.contacts() for one in passes], axis=1)
-    if found.shape[1] < _FEWEST:
-        allowed = f"{_FEWEST} or more"
-        raise InputError("contacts", found.shape[1], allowed, "sweep further along the body")
     points, normals = found[:3].T, found[3:6].T
     known = families(points, normals)
     length, stated = sweeps[0].beam.length, noise is not None
-    fitted = []
-    for kind in BODY_FAMILIES if family == "auto" else (family,):
-        start = _through_points(known[kind], points, normals)
-        with suppress(*([InputError] if family == "auto" else [])):
-            fitted.append(_fitted(passes, known[kind], start, length, stated))
-    explaining = [one for one in fitted if one.explains]
-    if family == "auto" and not explaining:
-        best = (f", the best leaves {min(one.misfit for one in fitted):.3g} times the noise"
-                if fitted else "")  # fmt: skip
-        allowed = "one that explains the readings"
-        remedy = "likely edges, friction, or a vibrissa that is not as stated"
-        raise InputError("family", f"none of them{best}", allowed, remedy)
-    rivals = {one.family: (one.bic, one.explains) for one in fitted}
-    return replace(min(explaining or fitted, key=lambda one: one.bic), rivals=rivals)
+
+    def fit(name: str) -> FittedBody:
+        start = _through_points(known[name], points, normals)
+        return _fitted(passes, known[name], start, length, stated)
+
+    remedy = "edges, friction, or a vibrissa that is not as stated"
+    return likeliest(family, BODY_FAMILIES, fit, remedy)
 
 
 def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _Contacts:
@@ -230,17 +203,17 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     largest = [np.abs(part).max(initial=0.0) for part in (clamp.force, clamp.moment)]
     spread = np.maximum(spread, _LEAST * np.repeat(largest, 3))
     found = clamp.contacts()
-    here = _Contacts(clamp, np.full(len(on), True), across(found[3:6].T), spread)
+    components = np.hstack([clamp.force, clamp.moment])
     variance = np.zeros((2, len(on)))
     for i, size in enumerate(spread):
-        moved = here.readings + size * np.eye(6)[i]
+        moved = components + size * np.eye(6)[i]
         beside = clamp._replace(force=moved[:, :3], moment=moved[:, 3:]).contacts()
         variance += (beside[6:] - found[6:]) ** 2
     reach, release = found[6:]
     before = reach < 1 - _CLEAR * np.sqrt(variance[0])
     at_tip = release > _CLEAR * np.sqrt(variance[1])
     kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip)
-    return _Contacts(clamp.at(kept), ~before[kept], here.sides[kept], spread)
+    return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread)
 
 
 def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
@@ -291,15 +264,14 @@ def _fitted(
     misfit = float(np.sqrt((((measured - moved) / over) ** 2).sum() / (left.size - len(numbers))))
     found = _estimates(family, numbers, known.covariance, length)
     return FittedBody(
-        family.name,
-        found,
-        family.body(numbers).scaled(length),
-        misfit,
-        explained_by_noise(misfit, left.size - len(numbers)),
-        -2 * known.likelihood + len(numbers) * float(np.log(left.size)),
-        len(measured),
-        known.noise,
-        {},
+        family=family.name,
+        found=found,
+        body=family.body(numbers).scaled(length),
+        misfit=misfit,
+        explains=explained_by_noise(misfit, left.size - len(numbers)),
+        bic=-2 * known.likelihood + len(numbers) * float(np.log(left.size)),
+        stations=len(measured),
+        noise=known.noise,
     )
 
 

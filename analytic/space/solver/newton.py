@@ -50,7 +50,7 @@ def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact
 
     Not so within some roundings, where halves of a step are roundings too.
     """
-    if min(start.plane.alpha, start.rotation) <= _FLATTEST:
+    if not _bent_outside(start):
         return None
     extent = max(1.0, float(np.abs(foot).max()), float(np.abs(start.centre).max()))
     best, missed = start, _miss(start, foot)
@@ -70,6 +70,12 @@ def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact
             return None
         best, missed = nearer, miss
     return best if missed <= _EXACT * extent else None
+
+
+def _bent_outside(contact: Contact) -> bool:
+    """Whether it bends the vibrissa, at a place outside the body: inside there is no normal."""
+    bent = min(contact.plane.alpha, contact.rotation) > _FLATTEST
+    return bent and bool(contact.spot.normal.any())
 
 
 def _miss(contact: Contact, foot: Floats) -> float:
@@ -92,6 +98,6 @@ def _trials(scene: Scene, at: Contact, foot: Floats) -> Iterator[Contact]:
         new = max(at.free + step[2], at.free / 10)
         place = at.on_parallel + step[:2] @ sides
         trial = contact_at(scene, place, new, at.tangent)
-        if trial.plane.alpha > _FLATTEST and trial.rotation > _FLATTEST:
+        if _bent_outside(trial):
             yield trial
         step = step / 2

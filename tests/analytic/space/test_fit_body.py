@@ -112,5 +112,18 @@ def test_what_says_too_little_is_a_line(sweeps):
     with pytest.raises(InputError, match=r"family = 'circle'.*sphere"):
         fit_body(sweeps["sphere"], "circle")
     few = sweeps["sphere"][0]
-    with pytest.raises(InputError, match="contacts"):
-        fit_body(replace(few, table=few.table.iloc[:15]))
+    touched = np.flatnonzero(few.table["phase"] != "free")
+    with pytest.raises(InputError, match="contacts of a sweep = "):
+        fit_body(replace(few, table=few.table.iloc[: touched[3] + 1]), "auto")
+
+
+def test_gaps_and_a_sweep_that_touches_nothing(sweeps):
+    """What is missing is left out; a pass that shows nothing is named."""
+    gapped = sweeps["sphere"][0]
+    table = gapped.table.copy()
+    table.loc[20:22, "force_x"] = np.nan
+    found = fit_body(replace(gapped, table=table), "sphere")
+    assert found.found["radius"].value == pytest.approx(1.0, abs=1e-9)
+    idle = replace(gapped, table=gapped.table.iloc[:3])
+    with pytest.raises(InputError, match=r"contacts of a sweep = 0.*leave the sweep out"):
+        fit_body([gapped, idle], "sphere")

@@ -1,0 +1,69 @@
+"""What a fit of an object has found, and the likeliest of several families."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+from analytic.from_clamp.calibration.calibrate import Estimate
+from analytic.from_clamp.correlated import NoiseFound
+from analytic.problem.errors import InputError, unknown
+from analytic.problem.shown import Shown
+
+Kind = TypeVar("Kind", bound="Fitted")
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Fitted(Shown):
+    """An object of a family: `FittedObject` in the plane, `FittedBody` in space."""
+
+    family: str
+    found: dict[str, Estimate]
+    misfit: float
+    explains: bool
+    bic: float
+    stations: int
+    noise: NoiseFound
+    rivals: dict[str, tuple[float, bool]] = field(default_factory=dict)
+
+    def _tiles(self) -> dict[str, object]:
+        return {
+            self.family: "" if self.explains else "does not explain the readings",
+            **{
+                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
+                for name, one in self.found.items()
+            },
+            "misfit": f"{self.misfit:.3g}",
+            "stations": self.stations,
+        }
+
+
+def check_family(family: str, known: Sequence[str]) -> None:
+    """Refuse what is no family's name, and not ``"auto"``."""
+    if family not in (*known, "auto"):
+        raise unknown("family", family, (*known, "auto"))
+
+
+def likeliest(
+    family: str, known: Sequence[str], fit: Callable[[str], Kind], otherwise: str
+) -> Kind:
+    """The fit of a family; with ``"auto"`` that of the least Schwarz criterion that explains all.
+
+    If none does, `otherwise` is what the object likely has.
+    """
+    if family != "auto":
+        found = [fit(family)]
+    else:
+        found = []
+        for name in known:
+            with suppress(InputError):  # one that the readings do not determine is none of them
+                found.append(fit(name))
+    explaining = [one for one in found if one.explains]
+    if family == "auto" and not explaining:
+        best = ""
+        if found:
+            best = f", the best leaves {min(one.misfit for one in found):.3g} times the noise"
+        allowed = "one that explains the readings"
+        raise InputError("family", f"none of them{best}", allowed, f"likely {otherwise}")
+    rivals = {one.family: (one.bic, one.explains) for one in found}
+    return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)
