@@ -152,6 +152,8 @@ def _apart(comparison: Comparison) -> Iterator[Block]:
     yield from common.apart_table(comparison)
     counts = comparison.alignment.counts.items()
     counted = [(words(why), str(n)) for why, n in counts if n or why == "compared"]
+    if apart := comparison.alignment.counts["compared"] - comparison.stations:
+        counted.insert(1, ("of these just before the snap-off: not in rms and max", str(apart)))
     removed = [("offset of the candidate's foot", _offset(comparison) or "none")]
     removed += [
         (f"noise of {name}, of its largest magnitude", short(level) if level else "none")
