@@ -29,7 +29,7 @@ _RANK = 1e-14  # of the largest eigenvalue: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
 _FINER = 4  # points of a periodogram for each of its own
 _SLOWEST = 5.0  # periods in all stations; what is slower is drift
-_FEWEST = 40  # stations; in fewer a line is not told from noise, and takes two of each channel
+_FEWEST = 40  # stations; in fewer a line looks like noise, and takes two of each channel
 _WIDTH = 3.0  # of a line, in periods in all stations
 _AROUND = 20.0  # the same: where the power beside a line is looked at
 
