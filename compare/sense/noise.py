@@ -8,6 +8,9 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.from_clamp.noise import largest, reading_noise
 
+NOTHING = 1e-100  # in any units: less is no load
+_ROUNDING = 1e-16  # of a moment beside a force times length: less is none
+
 
 def scales(reference: Readings) -> dict[str, float]:
     """Largest magnitude of each clamp reading, which all disagreements are relative to."""
@@ -18,16 +21,20 @@ def scales(reference: Readings) -> dict[str, float]:
     }
     force = max(largest["force_x"], largest["force_y"])
     moment = max(largest["moment_z"], force * reference.beam.length)
-    if not moment > 0:
+    if not moment > NOTHING:
         raise InputError(
             f"contact of the reference ({reference.source})",
             "none",
             "at some stations, with a load in the clamp",
             "sweep the reference past the object, or check its columns",
         )
-    force = force or moment / reference.beam.length
+    by_moment = moment / reference.beam.length
+    force = force if force > _ROUNDING * by_moment else by_moment
     instead = {"force_x": force, "force_y": force, "moment_z": moment}
-    return {name: largest[name] or instead[name] for name in CLAMP_READINGS}
+    return {
+        name: largest[name] if largest[name] > _ROUNDING * size else size
+        for name, size in instead.items()
+    }
 
 
 def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:

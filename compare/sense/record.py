@@ -9,7 +9,7 @@ from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import units
 from analytic.problem.table import says
-from compare.sense.noise import scales
+from compare.sense.noise import NOTHING, scales
 
 _LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 _FEWEST = 3  # equal extremes that are no accident
@@ -88,7 +88,7 @@ def inspect_record(readings: Readings) -> Record:
     dropped = np.zeros(len(values), dtype=bool)
     clipped = np.zeros(len(values), dtype=bool)
     cut = []
-    if (values[finite & ~failed][:, 1:] != 0).any():
+    if (np.abs(values[finite & ~failed][:, 1:]) > NOTHING).any():
         kept = finite & ~failed & ~repeated
         still = np.append(False, (values[1:, 1:] == values[:-1, 1:]).all(axis=1))
         moving = kept & ~(still | np.append(still[1:], False))  # not a clamp at rest

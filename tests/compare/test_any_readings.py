@@ -86,6 +86,16 @@ def test_a_reference_that_never_touches_is_no_reference():
         compare(replace(exact, table=exact.table.assign(**idle)), exact)
 
 
+def test_a_load_of_rounding_is_none():
+    """What is below the rounding of the other readings scales nothing."""
+    exact = exact_sweep("catenary")
+    tiny = replace(exact, table=exact.table.assign(moment_z=1e-320, force_x=-1e-200))
+    found = compare(tiny, exact)
+    assert all(np.isfinite(d.rms) for d in found.disagreement.values())
+    with pytest.raises(InputError, match="contact of the reference"):
+        compare(replace(tiny, table=tiny.table.assign(force_y=1e-320)), exact)
+
+
 @pytest.mark.parametrize(
     ("given_", "said"),
     [
