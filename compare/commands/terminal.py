@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from rich import box
 from rich.console import Console, JustifyMethod
+from rich.measure import Measurement
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -88,7 +89,11 @@ def show(*blocks: Block) -> None:
             case Items():
                 _list(block.said)
             case Table():
-                console().print(_table(block))
+                wide = console()
+                table = _table(block)
+                if Measurement.get(wide, wide.options, table).minimum >= wide.width:
+                    table.padding = 0
+                wide.print(table)
             case Verdict():
                 _verdict(block)
 

@@ -137,5 +137,5 @@ def _lone(
 def _agrees(error: Floats, limits: Tolerances, noise: NoiseAllowance) -> bool:
     """Whether the readings agree at some stations, by what they are off by there."""
     stations = error.shape[1]
-    allowed = [noise.rms(limits.of_sweep(name), name, stations) for name in CLAMP_READINGS]
+    allowed = [noise.rms(limits.of(name, "rms"), name, stations) for name in CLAMP_READINGS]
     return bool((rms(error) <= allowed).all())

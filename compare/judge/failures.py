@@ -26,6 +26,7 @@ class Failure:
     reason: str = ""  # why so much
     excess: float = math.inf  # how many times what is allowed; infinite for what must not be at all
     weight: int = 0  # the heavier leads: that nothing can be compared, readings, whatever follows
+    overall: bool = False  # of a reading's rms over all stations, which every table has
 
     @property
     def clause(self) -> str:
@@ -97,13 +98,14 @@ def _beyond(
     noise: float = 0.0,
     unit: str = "",
     weight: int = 0,
+    overall: bool = False,
 ) -> Iterator[Failure]:
     """A size beyond its limit, which noise or an uncertainty widens."""
     if size > widened:
         beside = f" beside noise of {noise:.1e}{unit}" if noise else ""
         most = f"allowed {limit:.2e}{unit}{beside}"
         excess = size / widened if widened else math.inf
-        yield Failure(name, found, most, limit.reason, excess, weight)
+        yield Failure(name, found, most, limit.reason, excess, weight, overall)
 
 
 def _more(name: str, found: str, count: int, limit: Limit, most: float) -> Iterator[Failure]:
@@ -122,14 +124,17 @@ def _components(
         level = noise.level[name]
         most = max(one.rms_by_phase, key=one.rms_by_phase.__getitem__, default="")
         which = f", most in phase {most}" if most else ""
-        asked = [(which, one.rms, limits.of(name, "rms"), one.stations)]
+        asked = [(which, one.rms, limits.of(name, "rms"), one.stations, True)]
         for phase, rms in one.rms_by_phase.items():
             if (special := limits.of_phase(name, phase)) is not None:
-                asked.append((f" in phase {phase}", rms, special, one.stations_by_phase[phase]))
-        for where, rms, limit, stations in asked:
+                stations = one.stations_by_phase[phase]
+                asked.append((f" in phase {phase}", rms, special, stations, False))
+        for where, rms, limit, stations, all_ in asked:
             widened = noise.rms(limit, name, stations)
             said = f"rms {rms:.2e} of its largest magnitude{where}"
-            yield from _beyond(name, said, rms, limit, widened, level, weight=_READINGS)
+            yield from _beyond(
+                name, said, rms, limit, widened, level, weight=_READINGS, overall=all_
+            )
         for phase, peak in one.peaks.items():
             limit = limits.of(name, "max", phase)
             widened = noise.max(limit, name, one.stations)

@@ -61,7 +61,7 @@ class Judged(SweepPair[Sweep]):
         if self.likely is not None:
             yield f"  likely: {self.likely}"
         for name, one in self.disagreement.items():
-            limit = self.tolerances.of_sweep(name)
+            limit = self.tolerances.of(name, "rms")
             if one.stations:
                 yield f"  {name:9} rms {one.rms:.1e}  max {one.max:.1e}  allowed {limit:.1e} rms"
         yield from self._beside()

@@ -84,10 +84,6 @@ class Limits:
         )
         return as_limit(kind, getattr(self, kind)) if found is None else found
 
-    def of_sweep(self, component: str) -> Limit:
-        """The limit of a component's rms over all stations."""
-        return self.of(component, "rms")
-
     def of_phase(self, component: str, phase: str) -> Limit | None:
         """The limit of a component's rms in one phase; None if none was asked for."""
         return self._most_special(f"{component}.{phase}.rms", f"{phase}.rms")

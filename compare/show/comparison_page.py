@@ -1,7 +1,10 @@
 """What the pages of all comparisons, in the plane and in space, have in common."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from analytic import PHASES, Readings
 from analytic.space import SpatialReadings
@@ -64,6 +67,12 @@ def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -
     return Verdict(found.agrees, claim, said, likely, found.failures, remarks)
 
 
+def brief(found: Comparison | SpatialComparison, verdict: Verdict) -> Verdict:
+    """A verdict above the table of what is apart, which has the rest of it."""
+    said = (found.worst, *(one for one in found.exceeded if one.overall))
+    return replace(verdict, failures=[str(one) for one in found.exceeded if one not in said])
+
+
 def along(found: Comparison | SpatialComparison) -> Along:
     """What is said of the column over which the sweeps run."""
     return ALONG[found.reference.running]
@@ -87,15 +96,16 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
     units = {"f": (beam.force_unit, "EI/L²"), "m": (beam.moment_unit, "EI/L")}
+    exceeded = {one.name for one in found.exceeded if one.overall}
+    near_snap_off = not np.isnan([x.max_before_snap_off for x in found.disagreement.values()]).all()
     rows = []
     for name, one in found.disagreement.items():
         unit, symbol = units[name[0]]
-        row = {"reading": name, "rms": short(one.rms)}
-        if isinstance(found, SpatialComparison):
-            row["allowed"] = short(found.tolerances.of(name, "rms"))
+        allowed = found.noise.rms(found.tolerances.of(name, "rms"), name, one.stations)
+        row = {"reading": name, "rms": short(one.rms), "limit": short(allowed)}
         row |= {f"rms, {PHASE_LETTERS[p]}": short(one.rms_by_phase.get(p)) for p in phases}
         row |= {"max": short(one.max), f"max at / {unit_along}": place(one.at / size)}
-        if isinstance(found, Comparison):
+        if near_snap_off:
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})
     yield Table(
@@ -103,6 +113,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
         "contact, B: tangential contact",
         [*rows[0]],
         [[*row.values()] for row in rows],
+        blamed=[i for i, name in enumerate(found.disagreement) if name in exceeded],
     )
 
 

@@ -19,7 +19,7 @@ from compare.show.document import (
     tiles_line,
 )
 from compare.show.figures import space as drawn
-from compare.show.numbers import percent, short
+from compare.show.numbers import percent, short, words
 from compare.show.scene import SweepScene
 
 
@@ -47,10 +47,9 @@ def spatial_document(
 
 def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
-    yield spatial_verdict(comparison)
+    yield common.brief(comparison, spatial_verdict(comparison))
     yield tiles_line(spatial_tiles(comparison))
     yield from common.apart_table(comparison)
-    yield events_table(comparison)
     if parts is not None:
         yield parts_table(parts)
 
@@ -79,6 +78,13 @@ def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> 
         asked = percent(comparison.tolerances.phase_agreement)
         note = f"of the compared stations; {asked} must be"
         yield Tile("phases alike", percent(comparison.phase_agreement), note)
+    for name, event in comparison.events.items():
+        if event.difference is not None:
+            apart = short(event.difference / comparison.reference.running_unit[0], " L")
+            allowed = short(comparison.tolerances.event)
+            yield Tile(
+                f"{words(name)} apart", apart, f"candidate less reference; {allowed} allowed"
+            )
     if parts is not None:
         yield Tile("stays unexplained", short(parts.unexplained), f"of {short(parts.whole)}")
 

@@ -13,8 +13,9 @@ _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about 
 
 def worst_reading(comparison: Comparison) -> str:
     """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it."""
-    limit = comparison.tolerances.of_sweep
-    return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms - limit(name))
+    limit = comparison.tolerances.of
+    found = comparison.disagreement
+    return max(CLAMP_READINGS, key=lambda name: found[name].rms - limit(name, "rms"))
 
 
 def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
@@ -22,7 +23,7 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
     candidate, reference = comparison.candidate.source, comparison.reference.source
     if comparison.worst is None:
         name = worst_reading(comparison)
-        found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
+        found, allowed = comparison.disagreement[name], comparison.tolerances.of(name, "rms")
         noise = comparison.noise.level[name]
         beside = "" if found.rms <= allowed else f" beside noise of {short(noise)}"
         much = (

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import current_process, get_all_start_methods, get_context, parent_process
 from threading import Thread
@@ -43,8 +43,9 @@ class Workers:
         context = get_context("forkserver" if server else "spawn")
         self._pool = ProcessPool(count, initializer=_end_with_leader, context=context)
         try:
-            with _nothing_from_here():
-                self.submit(os.getpid).result(_START)
+            # In a thread, which no interrupt meets: of a pool half made nobody would end the rest.
+            with _nothing_from_here(), ThreadPoolExecutor(1) as starter:
+                starter.submit(self.submit, os.getpid).result().result(_START)
         except (BrokenExecutor, ProcessExpired, OSError, TimeoutError) as error:
             self.end()
             reason = " ".join(str(error).split()) or type(error).__name__

@@ -111,4 +111,4 @@ def test_the_most_special_limit_holds():
     asked = (("force_x", "tip"), ("force_x", "tangent"), ("force_y", "tip"), ("force_y", "tangent"))
     assert [limits.of(r, "max", p) for r, p in asked] == [0.125, 0.25, 0.5, 1.0]
     assert [limits.of_phase(*one) for one in asked] == [0.75, None, 0.75, None]
-    assert limits.of_sweep("force_x") == 2.0
+    assert limits.of("force_x", "rms") == 2.0

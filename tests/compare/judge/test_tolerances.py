@@ -35,8 +35,8 @@ def test_limits_from_a_file(tmp_path):
     limits = read_tolerances(tmp_path / "limits.toml", Tolerances)
     assert limits.rms == 4e-3
     assert limits.max == Tolerances().max
-    assert limits.of_sweep("force_x").reason == "the force that is used"
-    assert limits.of_sweep("force_y") == 4e-3
+    assert limits.of("force_x", "rms").reason == "the force that is used"
+    assert limits.of("force_y", "rms") == 4e-3
     assert limits.of("moment_z", "max", "tangent") == 1e-5
     assert limits.of("moment_z", "max", "tip") == Tolerances().max
     found = compare(exact_sweep("catenary"), simulated_sweep("catenary"), limits)
