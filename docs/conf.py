@@ -46,6 +46,7 @@ include_patterns = [f"{page}.*" for pages in NAV.values() for page in pages.spli
 include_patterns += ["README.md", "results/*.png", "docs/gallery/*.png"]
 exclude_patterns = ["**/*.py", "**/*.toml", "**/*.csv"]
 html_theme = "furo"
+html_static_path, html_css_files = ["site.css"], ["site.css"]
 version = metadata.version(project)
 html_title = f"{project} {version}"
 html_show_sphinx = html_copy_source = html_show_sourcelink = False

@@ -1,7 +1,6 @@
 """What the pages of all comparisons, in the plane and in space, have in common."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -59,18 +58,14 @@ def document(
 
 
 def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -> Verdict:
-    """Whether the two agree, and why not."""
+    """Whether the two agree, and why not; the table of what is apart has the rest of it."""
     agrees = "agrees" if found.agrees else "disagrees"
     claim = f"{found.candidate.source} {agrees} with {found.reference.source}."
     likely = "" if found.agrees else sentence(why)
+    elsewhere = (found.worst, *(one for one in found.exceeded if one.overall))
+    failures = [str(one) for one in found.exceeded if one not in elsewhere]
     remarks = [*map(sentence, found.remarks)]
-    return Verdict(found.agrees, claim, said, likely, found.failures, remarks)
-
-
-def brief(found: Comparison | SpatialComparison, verdict: Verdict) -> Verdict:
-    """A verdict above the table of what is apart, which has the rest of it."""
-    said = (found.worst, *(one for one in found.exceeded if one.overall))
-    return replace(verdict, failures=[str(one) for one in found.exceeded if one not in said])
+    return Verdict(found.agrees, claim, said, likely, failures, remarks)
 
 
 def along(found: Comparison | SpatialComparison) -> Along:
@@ -122,14 +117,17 @@ def places_table(
 ) -> Table:
     """Where events are in both sweeps."""
     size, _ = found.reference.running_unit
+    unsure = any(pair.uncertainty for pair in events.values())
     rows = []
     for name, pair in events.items():
         known = (pair.reference, pair.candidate, pair.difference)
         ours, theirs, apart = (None if x is None else x / size for x in known)
-        wide = short(pair.uncertainty / size) if pair.uncertainty else ""
-        rows.append((words(name), place(ours), place(theirs), short(apart), wide))
-    sources = found.reference.source, found.candidate.source
-    return Table(caption, ("", *sources, "difference", "uncertainty"), rows)
+        row = [words(name), place(ours), place(theirs), short(apart)]
+        if unsure:
+            row.append(short(pair.uncertainty / size) if pair.uncertainty else "")
+        rows.append(row)
+    head = ["", found.reference.source, found.candidate.source, "difference"]
+    return Table(caption, [*head, "uncertainty"] if unsure else head, rows)
 
 
 def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:

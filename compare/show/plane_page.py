@@ -56,7 +56,7 @@ def plane_document(
 
 def plane_summary(comparison: Comparison) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
-    yield common.brief(comparison, plane_verdict(comparison))
+    yield plane_verdict(comparison)
     yield from map(Text, validation_lines(comparison))
     yield tiles_line(plane_tiles(comparison))
     yield from common.apart_table(comparison)

@@ -47,7 +47,7 @@ def spatial_document(
 
 def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
-    yield common.brief(comparison, spatial_verdict(comparison))
+    yield spatial_verdict(comparison)
     yield tiles_line(spatial_tiles(comparison))
     yield from common.apart_table(comparison)
     if parts is not None:
