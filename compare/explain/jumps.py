@@ -37,10 +37,10 @@ def _unrest(found: Measurement, error: Floats) -> str | None:
     if not np.isfinite(residual).any():
         return None
     typical = float(np.sqrt(np.nanmean(residual**2)))
-    moment = found.disagreement["moment_z"].scale / candidate.beam.moment_unit
-    if typical / moment < float(np.sqrt(np.mean(error**2))):
+    if typical / found.disagreement["moment_z"].scale < float(np.sqrt(np.mean(error**2))):
         return None
-    return f"unrest: the stations are out of balance by {typical:.1e} EI/L (rms of `residual`)"
+    size = f"{typical / candidate.beam.moment_unit:.1e} EI/L"
+    return f"unrest: the stations are out of balance by {size} (rms of `residual`)"
 
 
 def _stepped(found: Measurement, error: Floats, scale: Floats) -> str | None:

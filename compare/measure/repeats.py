@@ -12,7 +12,7 @@ from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import zero_uncertainty
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from compare.sense.noise import scales
 
 _STEPS = 4  # median steps of the foot that are averaged
@@ -52,7 +52,19 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     scatter = binned.std(axis=0, ddof=1)[:, 1:]
     largest = np.abs(mean[:, 1:]).max(axis=0)
     kept = np.all(scatter <= _UNLIKE * np.median(scatter, axis=0) + _STEEP * largest, axis=1)
-    mean = mean[kept]
+    kept &= ~_half_loaded(mean[:, 1:] / largest)
+    mean, ends = mean[kept], ~_between(kept)[kept]
+    # What the passes are away from the mean is averaged, not they: it is nearly straight.
+    order = np.argsort(mean[:, 0])
+    curve = PchipInterpolator(mean[order, 0], mean[order, 1:])
+    for table in tables:
+        foot = table["foot_x"].to_numpy()
+        table[list(CLAMP_READINGS)] -= curve(foot)
+        table[_SLOPES] = curve(foot, 1)
+    _, away, slopes = np.split(_means(tables, stretches)[:, kept], [1, 4], axis=2)
+    bent = np.where(ends[:, None], 0.0, away.mean(axis=0))
+    mean[:, 1:] += bent  # a mean of four stations cuts a bend short
+    away -= bent
     unlike = scatter[kept] / np.sqrt(len(passes))
     scattered = np.sqrt(np.mean(unlike**2, axis=0)).tolist()
     provenance = {
@@ -66,18 +78,11 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         f"measured, mean of {len(passes)} passes",
         {name: x for name, x in provenance.items() if name not in _OF_ONE_PASS},
     )
-    # What the passes are away from the mean is averaged, not they: it is nearly straight.
-    order = np.argsort(mean[:, 0])
-    curve = PchipInterpolator(mean[order, 0], mean[order, 1:])
-    for table in tables:
-        foot = table["foot_x"].to_numpy()
-        table[list(CLAMP_READINGS)] -= curve(foot)
-        table[_SLOPES] = curve(foot, 1)
     scale = np.array([*scales(of_all).values()])
     touching = np.all(np.abs(mean[:, [2, 3]]) > _TOUCHING * scale[1:], axis=1)
     first, last = mean[touching, 0][[0, -1]]
-    touching &= np.abs(mean[:, 0] - last) > _NEXT_TO_SNAP_OFF * abs(last - first)
-    _, away, slopes = np.split(_means(tables, stretches)[:, kept][:, touching], [1, 4], axis=2)
+    touching &= ~ends & (np.abs(mean[:, 0] - last) > _NEXT_TO_SNAP_OFF * abs(last - first))
+    away, slopes = away[:, touching], slopes[:, touching]
     stations, count = away.shape[1], len(passes)
     seen = [median_abs_deviation(np.diff(x, axis=0), axis=0) for x in away / scale]
     known = max(1e-12, float(np.median(seen)))
@@ -100,6 +105,21 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         shifts,
         np.sqrt([covariance[0, 0] for _, covariance in found.by_pass]),
     )
+
+
+def _half_loaded(readings: Floats) -> Booleans:
+    """Whether a stretch may hold rows in contact and rows of none: it is loaded beside a free one.
+
+    Relative readings, shape (stretches, 3), along the travel.
+    """
+    loaded = np.any(np.abs(readings) > _TOUCHING, axis=1)
+    return loaded & ~_between(loaded)
+
+
+def _between(these: Booleans) -> Booleans:
+    """Those whose neighbours both are of these; the first and the last have one."""
+    beside = np.pad(these, 1, mode="edge")
+    return beside[:-2] & beside[2:]
 
 
 def _stretches(foot: Sequence[Floats]) -> list[Floats]:
