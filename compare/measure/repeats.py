@@ -113,13 +113,13 @@ def _half_loaded(readings: Floats) -> Booleans:
     Relative readings, shape (stretches, 3), along the travel.
     """
     loaded = np.any(np.abs(readings) > _TOUCHING, axis=1)
-    return loaded & ~_between(loaded)
+    return np.asarray(loaded & ~_between(loaded))
 
 
 def _between(these: Booleans) -> Booleans:
     """Those whose neighbours both are of these; the first and the last have one."""
     beside = np.pad(these, 1, mode="edge")
-    return beside[:-2] & beside[2:]
+    return np.asarray(beside[:-2] & beside[2:])
 
 
 def _stretches(foot: Sequence[Floats]) -> list[Floats]:

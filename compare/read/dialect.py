@@ -20,6 +20,7 @@ from compare.read.units import is_unit
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB
 _LOOKED_AT = 200  # lines that decide
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "#n/a", "-"})
+_NO_UNIT = frozenset({"-", "--", "1", "%", "°", "°C"})  # of nothing that is sensed
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|[+-]?(inf|infinity)", re.IGNORECASE)
 _COMMA_IS_POINT = str.maketrans(",.", ".,")
 
@@ -153,7 +154,8 @@ def _cells(dialect: Dialect, line: str, width: int) -> list[str]:
 def _units(dialect: Dialect, before: list[str], width: int) -> list[str]:
     """The columns' units: the last line before the data, if all in it are, with names above."""
     names, units = ([_cells(dialect, line, width) for line in before[-2:]] + [[], []])[:2]
-    units = [unit.strip("[]") for unit in units]
+    units = [unit.strip("[]()") for unit in units]
+    units = ["" if unit in _NO_UNIT else unit for unit in units]
     given = [(name, unit) for name, unit in zip(names, units, strict=False) if unit]
     is_row = len(given) > 1 and all(name and is_unit(unit) for name, unit in given)
     return units if is_row else []

@@ -16,6 +16,7 @@ from compare.read.kinds import TEXTS
 from compare.read.nonsense import check_ahead, check_back, check_channels, check_drift, check_free
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
+from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
 
 _FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
@@ -108,6 +109,9 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
     for name in SENSED:
         said = rig.columns[name]
         column = cells(table.frame, said.column, path, "fix [columns]")
+        if said.unit and abs(said.gain) == 1:  # else the gain may be what converts it
+            written = table.units.get(said.column, "")
+            check_unit(said.unit, said.column, written, DIMENSIONS[name])
         if not pd.api.types.is_numeric_dtype(column):
             column = column.mask(column.astype(str).str.strip().isin(rig.missing))
         numbers = as_numbers(column, said.column, table.place)

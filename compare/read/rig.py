@@ -19,7 +19,7 @@ from compare.read.assumed import BEAM_WANTED, assumed_of
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
 from compare.read.tables import read_beam
-from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
+from compare.read.units import DIMENSIONS, OWN_UNITS, check_unit, unit_in_si
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
@@ -175,6 +175,7 @@ def renamed(
             raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
         named[name] = as_numbers(cells(table, column, called, "check --column"), column, place)
         if unit:
+            check_unit(unit, column, units.get(column, ""), DIMENSIONS[name])
             used[name] = unit
         elif units.get(column):
             own[name] = units[column]

@@ -30,6 +30,8 @@ _UNIT = re.compile(
     r"(?:[^\W\d]\w*|[²³]|[()·*/ ]|(?:\^|\*\*) ?-?\d{1,2}(?!\d| ?\^| ?\*\*)|(?<![\d.])1(?= ?/))+"
 )
 
+_IN_NAME = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # as in "Fx [mN]"
+
 
 @cache
 def _registry() -> "pint.UnitRegistry[float]":
@@ -58,6 +60,18 @@ def unit_in_si(unit: str, dimension: str) -> float:
 def is_unit(text: str) -> bool:
     """Whether a text is a unit, of any dimension."""
     return _parsed(text) is not None
+
+
+def check_unit(unit: str, column: str, written: str, dimension: str) -> None:
+    """Refuse a unit of which the file itself says, over a column or in its name, that it is not."""
+    in_name = _IN_NAME.search(column)
+    own = _parsed(written or (in_name[1] if in_name else ""))
+    if own is None or not own.is_compatible_with(dimension):
+        return
+    if not math.isclose(own.to(dimension).magnitude, unit_in_si(unit, dimension)):
+        found = f"in {unit}"
+        allowed = f"in {own.units:~}, as the file says"
+        raise InputError(f"column {column!r}", found, allowed, "correct the one that is wrong")
 
 
 def _parsed(text: str) -> "pint.Quantity[float] | None":

@@ -95,13 +95,27 @@ def test_a_line_of_units_below_the_names(tmp_path, exact, rig, separator, bracke
     )
     with pytest.raises(InputError, match="vibrissa = none given"):
         read_measured(path, columns=columns)
-    # A unit that is named counts, and the file's own names need not be.
-    named = read_measured(path, BEAM, [*columns[:3], "moment_z=Moment:N m"])
-    assert named.values("moment_z") == pytest.approx(1e6 * found.values("moment_z"))
+    # A unit that is named may not contradict the file, whose own names need not be given.
+    with pytest.raises(InputError, match=r"column 'Moment' = in N m: must be in .*N.*mm?, as"):
+        read_measured(path, BEAM, [*columns[:3], "moment_z=Moment:N m"])
     path.write_text(path.read_text().replace(separator.join(names), separator.join(SENSED)))
     assert read_measured(path, BEAM).values("foot_x") == pytest.approx(found.values("foot_x"))
-    in_m = read_measured(path, BEAM, ["foot_x=foot_x:m"])
-    assert in_m.values("foot_x") == pytest.approx(1e3 * found.values("foot_x"))
+    assert read_measured(path, BEAM, ["foot_x=foot_x:mm"]).source == found.source
+    with pytest.raises(InputError, match="column 'foot_x' = in m: must be in mm, as the file says"):
+        read_measured(path, BEAM, ["foot_x=foot_x:m"])
+
+
+def test_a_line_of_units_of_which_some_are_none(tmp_path, rig):
+    """Counters, ratios and temperatures beside what is sensed; a unit in a column's own name."""
+    table = rig.set_axis(["Weg", "Fx", "Fy", "Mz [mN mm]"], axis=1).assign(Nr=1, T=23.5, ok=100)
+    path = tmp_path / "rig.csv"
+    head = ";".join(table) + "\nmm;mN;mN;mN mm;-;°C;%\n"
+    path.write_text(head + table.to_csv(index=False, header=False, sep=";"))
+    columns = [f"{n}={c}" for n, c in zip(SENSED, table, strict=False)]
+    assert read_measured(path, BEAM, columns).provenance[OWN_UNITS]["foot_x"] == "mm"
+    path.write_text(table.to_csv(index=False, sep=";"))
+    with pytest.raises(InputError, match=r"'Mz \[mN mm\]' = in N m: must be in"):
+        read_measured(path, BEAM, ["foot_x=Weg:mm", "moment_z=Mz [mN mm]:N m"])
 
 
 def test_names_that_are_units_by_chance_are_names(tmp_path, rig):
