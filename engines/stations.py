@@ -208,7 +208,8 @@ class _Walk:
             return near and last.load < _HELD
         if last.phase == "free":
             return near
-        return near and abs(row.contact_angle - last.contact_angle) < _SHIFT
+        # An engine need not know the slope of the contour.
+        return near and not abs(row.contact_angle - last.contact_angle) >= _SHIFT
 
     def _end(self, trial: float, row: Row | None) -> None:
         """The branch ends here: it let go, in a fold, or the solver failed."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, CaseName, flag, option, require_fraction, words
-from compare.commands.output import output_folder, waiting
+from compare.commands.output import check_own, output_folder, waiting
 from mujoco_models.allowed import BeamKind
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from compare.simulate.prescription import Prescription
 
 _SPEED = 0.05  # L/T1; what is slower is nearer to rest
+_OUT = Path("whisker.xml")
 _MATERIALS = 2, 3  # modulus, radius, and a tube's inner one
 
 
@@ -22,7 +23,7 @@ def export(
     case: CaseName,
     out: Annotated[
         Path, option("The file, *.xml or *.urdf.", "FILE", "whisker.xml", "--out")
-    ] = Path("whisker.xml"),
+    ] = _OUT,
     error: Annotated[
         float, option("Largest rms of a reading, relative to its largest magnitude.", "RMS")
     ] = 0.01,
@@ -54,6 +55,8 @@ def export(
     if out.suffix not in (".xml", ".urdf"):
         raise InputError("--out", out, "named *.xml or *.urdf", "rename it")
     require_fraction("--error", error, "0.01")
+    if out == _OUT:
+        check_own(out, "In a robot:")
     with waiting("loading"):
         from compare.commands import terminal
         from compare.read.case import load_job

@@ -10,7 +10,7 @@ from analytic.problem.errors import InputError, unknown
 from analytic.problem.files import regular_file
 from compare.commands.kinds import For, require_use
 from compare.commands.options import AGREES, DISAGREES, Changes, flag, option, out_folder
-from compare.commands.output import output_folder
+from compare.commands.output import check_own, output_folder
 from compare.read.kinds import MODEL
 
 if TYPE_CHECKING:
@@ -96,8 +96,9 @@ def inspect(
     for line in inspection.lines():
         terminal.print_line(line)
     if write is not None:
-        from compare.simulate.fixing import case_of, fix
+        from compare.simulate.fixing import CASE_MARK, case_of, fix
 
+        check_own(write.with_name("case.toml"), CASE_MARK)
         with output_folder(write.parent):
             fixed = fix(_path(model), names, inspection, write)
             for line in fixed.lines():

@@ -46,6 +46,12 @@ def output_folder(folder: Path) -> Iterator[Path]:
         _remove_empty(made)
 
 
+def check_own(path: Path, mark: str) -> None:
+    """Refuse to replace a file that nobody named, unless it has the mark of the command's own."""
+    if path.exists() and mark not in path.read_text(encoding="utf-8", errors="replace"):
+        raise InputError("output", path, "free, or from an earlier run", "move it, or name another")
+
+
 def warn(line: str) -> None:
     """Say something on standard error, after the command's name."""
     typer.echo(f"vibrissa: {line}", err=True)

@@ -65,13 +65,15 @@ def is_unit(text: str) -> bool:
 def check_unit(unit: str, column: str, written: str, dimension: str) -> None:
     """Refuse a unit of which the file itself says, over a column or in its name, that it is not."""
     in_name = _IN_NAME.search(column)
-    own = _parsed(written or (in_name[1] if in_name else ""))
+    said = written or (in_name[1] if in_name else "")
+    own = _parsed(said)
     if own is None or not own.is_compatible_with(dimension):
         return
     if not math.isclose(own.to(dimension).magnitude, unit_in_si(unit, dimension)):
-        found = f"in {unit}"
-        allowed = f"in {own.units:~}, as the file says"
-        raise InputError(f"column {column!r}", found, allowed, "correct the one that is wrong")
+        allowed = f"in {said}, as the file says"
+        raise InputError(
+            f"column {column!r}", f"in {unit}", allowed, "correct the one that is wrong"
+        )
 
 
 def _parsed(text: str) -> "pint.Quantity[float] | None":

@@ -25,6 +25,8 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 SPEED = 0.05
 """Of the sweep that is predicted [L/T1]."""
+CASE_MARK = "# Written by `vibrissa inspect --write`: the vibrissa"
+"""The first line of a case file that is not a user's own."""
 _ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step
 _STATIONS = 21  # of a varying EI
 
@@ -84,8 +86,8 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
         s = np.linspace(0, length, _STATIONS)
         pairs = zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True)
         along = f"[{', '.join(f'[{at:.6g}, {ei:.6g}]' for at, ei in pairs)}]"
-    lines = ["[beam]", f"length = {length:.6g}", f"flexural_rigidity = {along}",
-             f"radius = {radius:.6g}"]  # fmt: skip
+    lines = [f"{CASE_MARK} of {file.name}", "[beam]", f"length = {length:.6g}",
+             f"flexural_rigidity = {along}", f"radius = {radius:.6g}"]  # fmt: skip
     if tip != radius:
         lines.append(f"tip_radius = {tip:.6g}")
     if is_curved(found):
@@ -101,4 +103,10 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
               "[model]", f'file = "{file.name}"']  # fmt: skip
     lines += [f'{name} = "{value}"' for name, value in names.items() if value is not None]
     lines += ["[motion]", f"speed = {SPEED}"]
+    most, cells = expected(found, SPEED).interval[1], [joint.cell for joint in found.joints]
+    lines += [
+        "[tolerances]",
+        f'rms = {{ limit = {most:.2g}, reason = "the most that inspect expects of this model" }}',
+        f'transition = {{ limit = {max(cells) / length / 2:.2g}, reason = "half a link" }}',
+    ]
     return "\n".join(lines) + "\n"

@@ -72,6 +72,8 @@ _READS = 0.01  # of a load, by the sensor that should read all of it
 # 4,000 made 13 % rms of it, as contacts did not hold.
 _MOST_UNDONE, _LITTLE_UNDONE = 1e3, 10.0
 _LONGEST_STEP = 0.05  # T1; leaves about 0.8 per cent
+_FIRST = 2 * np.pi / 3.51602  # of a uniform cantilever: T1 over sqrt(m L^3/EI)
+_TURNING = 3.0  # times that; all of the mass at the tip makes 2.03
 _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
@@ -249,9 +251,13 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
         kind: Literal["fault", "note"] = "note"
         if sag > _SAG or weight > _RIGIDITY * _FORCE:
             kind = "fault"
+        read = (
+            ""
+            if found.force is None
+            else (f", and the force sensor reads {weight:.2g} EI/L^2 of it before anything touches")
+        )
         yield Remark(kind, "gravity", f"{strength:.3g} bends the vibrissa by {sag:.1e} L at the "
-                     f"tip, and the force sensor reads {weight:.2g} EI/L^2 of it before anything "
-                     "touches: a weight of that over L. Switch it off, or state it as [weight]",
+                     f"tip{read}", "switch it off: a model of your own is compared without",
                      edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
 
 
@@ -432,6 +438,12 @@ def _steps(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "time step", f"{found.timestep:g} is {fraction:.2g} of the first "
                      "period: steps leap over what the vibrissa does",
                      edits=steps(found))  # fmt: skip
+    of_its_mass = _FIRST * np.sqrt(found.mass * found.length**3 / found.tip_rigidity)
+    turning = found.period_without_armature / of_its_mass
+    if turning > _TURNING:
+        yield Remark("fault", "inertia", f"the first period is {turning:.2g} times that of a beam "
+                     "of this mass: the links are far too hard to turn", "leave out <inertial>, or "
+                     "give each link the inertia of its shape")  # fmt: skip
     slower = found.period / found.period_without_armature
     if slower > 1 + _RIGIDITY:
         yield Remark("note", "armature", f"makes the first period {slower:.3g} times as long")

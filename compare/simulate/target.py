@@ -81,7 +81,8 @@ def advised(found: Budget, runs: Mapping[str, Readings], target: float) -> tuple
         points, cut = finer(points, "facets", shares[1], order, _POINTS)
     error = math.hypot(rest, bent, cut)
     if error > target:
-        least = f"at least {error / _FRACTION:.1e} for this case"
-        raise InputError("--target", target, least, "ask for less")
+        least = f"at least {error / _FRACTION:.1e}, the smallest that this budget can predict"
+        remedy = "begin with a finer run: more --segments, whose budget is surer"
+        raise InputError("--target", target, least, remedy)
     chosen = replace(base, segments=segments, contour_points=points, contact_stiffness=stiffness)
     return chosen, error

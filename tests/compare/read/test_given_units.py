@@ -96,7 +96,7 @@ def test_a_line_of_units_below_the_names(tmp_path, exact, rig, separator, bracke
     with pytest.raises(InputError, match="vibrissa = none given"):
         read_measured(path, columns=columns)
     # A unit that is named may not contradict the file, whose own names need not be given.
-    with pytest.raises(InputError, match=r"column 'Moment' = in N m: must be in .*N.*mm?, as"):
+    with pytest.raises(InputError, match=r"column 'Moment' = in N m: must be in mN mm, as"):
         read_measured(path, BEAM, [*columns[:3], "moment_z=Moment:N m"])
     path.write_text(path.read_text().replace(separator.join(names), separator.join(SENSED)))
     assert read_measured(path, BEAM).values("foot_x") == pytest.approx(found.values("foot_x"))
