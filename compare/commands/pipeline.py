@@ -87,7 +87,8 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
         for line in faults_of(job.model, job.case.beam):
             terminal.print_line(line)
     elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
-        _print_beside_rest(job, comparison, folder)
+        if job.case.friction == 0:  # else many states are at rest
+            _print_beside_rest(job, comparison, folder)
     more = "" if asked.budget else "; --budget adds what the disagreement is made of"
     terminal.print_report(written, more)
     return comparison.agrees and possible and split.reached

@@ -63,7 +63,8 @@ def verdict(rows: Sequence[Row]) -> Verdict:
         said[row.state].append(f"{row.state}: {line}; {_why(row)}".rstrip("; "))
     wrong = said["differs"]
     counts = ", ".join(f"{_count(rows, state)} {state}" for state in _COLOURS)
-    claim = "Some numbers differ." if wrong else "All numbers agree, or differ as stated."
+    left = f"{len(said['open'])} of {len(rows)} numbers are open" if said["open"] else ""
+    claim = "Some numbers differ." if wrong else f"{left or 'All numbers agree'}, none differs."
     return Verdict(not wrong, claim, f"Of {len(rows)}: {counts}.", "", wrong, said["open"])
 
 

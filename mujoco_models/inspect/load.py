@@ -12,7 +12,7 @@ _LARGEST = 50_000_000  # bytes of the file itself; assets are MuJoCo's matter
 _SUFFIXES = (".xml", ".urdf")  # MuJoCo reads by the name what an object is to be added to
 _REMEDIES = (
     (r"flex with general attachments", "a flex that is a beam needs MuJoCo 4"),
-    (r"plugin|composite", "MuJoCo 3.17 has composite cables and their plugin, 4.0 has neither"),
+    (r"plugin|composite", "only MuJoCo 3 has composite cables: pip install 'mujoco==3.17.*'"),
     (r"mesh|stl|obj|msh|resource|open", "put its files where it says, or correct meshdir"),
     (r"mass and inertia", "give every moving body a mass"),
 )

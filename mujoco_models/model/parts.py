@@ -44,8 +44,9 @@ def require_no_friction(friction: float, engine: str = "MuJoCo") -> None:
     """Refuse friction at rest."""
     if friction != 0:
         allowed = f"0 for {engine} at rest"
-        remedy = "with friction many states are at rest, and the motion decides which"
-        raise InputError("friction", friction, allowed, f"{remedy}: simulate_motion")
+        remedy = "with friction many states are at rest, and the motion decides which: run it with "
+        remedy += "--motion (simulate_motion), or in closed form alone, --engine exact"
+        raise InputError("friction", friction, allowed, remedy)
 
 
 def require_radius(radius: float, engine: str = "MuJoCo") -> None:
