@@ -11,7 +11,7 @@ from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import slopes_at, solve_beside
-from analytic.solver.general.sweep import solve
+from analytic.solver.general.sweep import AT_ONCE, solve
 
 _MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, x to -x
 
@@ -45,7 +45,9 @@ class Expected:
     def _slopes(self) -> Floats:
         """What several cases beside this one start from."""
         case, _ = _to_the_left(self.case, np.empty(0))
-        return slopes_at(case.centreline, Vibrissa.of_case(case), self.places)
+        line, vibrissa = case.centreline, Vibrissa.of_case(case)
+        pieces = np.array_split(self.places, len(self.places) // AT_ONCE + 1)
+        return np.concatenate([slopes_at(line, vibrissa, some) for some in pieces])
 
 
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
