@@ -209,8 +209,9 @@ def pass_picture(one: Pass) -> Figure:
         kept = one.readings.values(name) / size
         draw(ax, foot_x, kept, **small, color=style.REFERENCE, label="kept")
         everywhere = ax.get_xaxis_transform()
-        thin = {"color": style.CANDIDATE, "linewidth": 0.5, "alpha": 0.4}
-        ax.vlines(foot_x[cut], 0, 1, transform=everywhere, **thin)
+        ax.vlines(
+            foot_x[cut], 0, 1, style.CANDIDATE, linewidth=0.5, alpha=0.4, transform=everywhere
+        )
         ax.fill_between(
             foot_x, 0, 1, where=one.free, transform=everywhere, color=style.GREY, alpha=0.15
         )
