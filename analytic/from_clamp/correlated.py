@@ -23,7 +23,8 @@ _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep show
 _PRIOR = _LONG / _LONG.sum() / _WHITE
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _DRAWS = 400  # of the noise, over which the estimate is averaged
-_AT_ONCE = 2_000_000  # numbers in memory
+_FEW = 2  # a spread takes two
+_AT_ONCE = 500_000  # numbers in memory, 4 MB
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest eigenvalue: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
@@ -105,11 +106,12 @@ def estimate(
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
     likely = softmax(weights, axis=0)
-    systems = np.diag(prior) + np.zeros((len(rows), _DRAWS, 1, 1))
+    draws = _DRAWS if known else _FEW  # where only the noise is sought
+    systems = np.diag(prior) + np.zeros((len(rows), draws, 1, 1))
     draw = np.random.default_rng(seed)
     for channel in range(readings.shape[1]):
-        at = draw.choice(len(_GRID), size=_DRAWS, p=likely[:, channel])
-        variance = square[at, channel] / draw.chisquare(freedom, size=_DRAWS)
+        at = draw.choice(len(_GRID), size=draws, p=likely[:, channel])
+        variance = square[at, channel] / draw.chisquare(freedom, size=draws)
         systems += gram[:, at, channel] / variance[:, None, None]
     one_by_one = _without_nuisances(systems, known)[0]
     white = np.diag(prior) + gram[:, :1].sum(axis=2) / (least or _NOISELESS) ** 2

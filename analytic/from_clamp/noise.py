@@ -17,7 +17,7 @@ _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
 DOUBLE_SIDED_95 = 1.959964  # standard deviations, of a normal distribution
 SAMPLES = 400  # of the noise, a station
-AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
+AT_ONCE = 500  # stations whose samples are in memory: 1.6 MB for each number of them
 _COVERAGE = 0.95
 MEDIAN_OF_NORMAL = 0.6745
 """Median of |x| for a standard normal x: turns a median deviation into a standard deviation."""

@@ -7,6 +7,8 @@ from .from_clamp.cloud import point_cloud as point_cloud
 from .from_clamp.cloud import write_ply as write_ply
 from .from_clamp.fit_body import FittedBody as FittedBody
 from .from_clamp.fit_body import fit_body as fit_body
+from .from_clamp.hull import ConvexBand as ConvexBand
+from .from_clamp.hull import convex_band as convex_band
 from .from_clamp.reconstruct import reconstruct_space as reconstruct_space
 from .from_clamp.reconstruct import wrench_complaint as wrench_complaint
 from .problem.bodies.body import Body as Body

@@ -70,8 +70,8 @@ def reconstruct(
         str | None,
         option(
             "The whole object: circle, ellipse, superellipse, convex, in space sphere, ellipsoid, "
-            "cylinder; auto: the likeliest of them. Exit code 1 if it does not explain the "
-            "readings.",
+            "cylinder, convex; auto: the likeliest of them, in space but for convex. Exit code 1 "
+            "if it does not explain the readings.",
             "FAMILY",
         ),
     ] = None,

@@ -17,10 +17,12 @@ from analytic import (
     relative_noise,
     require_beam,
 )
+from analytic.from_clamp.fitted import check_family
 from analytic.from_clamp.passes import as_passes
 from analytic.from_clamp.reconstruct import doubt, scatter_of_contacts
 from analytic.problem.support import check_support
-from analytic.space import SpatialReadings, fit_body
+from analytic.space import SpatialReadings, convex_band, fit_body
+from analytic.space.from_clamp.fit_body import BODY_FAMILIES
 from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
 from compare.commands.comparing import RigFiles as RigFiles
@@ -33,9 +35,11 @@ from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
 from compare.show.figures.space import sweep_in_space
-from compare.show.fits import object_document, object_summary
+from compare.show.fits import band_document, band_summary, object_document, object_summary
 from compare.show.numbers import quantity
-from compare.show.scene import SweepScene
+from compare.show.scene import SweepScene, solid_ply
+
+CONVEX = "convex"
 
 
 def read_in_space(file: Path, known: SpaceJob | None, rig: RigFiles) -> SpatialReadings:
@@ -55,6 +59,9 @@ def in_space(readings: SpatialReadings, known: SpaceJob | None, place: Path, noi
 
 def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: str) -> bool:
     """Fit the body of a family to all sweeps, write and print it; whether it explains them."""
+    check_family(family, (*BODY_FAMILIES, CONVEX))
+    if family == CONVEX:
+        return _band_of(sweeps, place, noise)
     with waiting("fitting"):
         fitted = fit_body(sweeps, family, deviations(sweeps, noise))
     with output_folder(place) as folder:
@@ -64,6 +71,22 @@ def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: st
             picture = sweep_in_space(SweepScene.of(sweeps[0], fitted.body))
         terminal.keep(folder / "object.png", picture)
     return fitted.explains
+
+
+def _band_of(sweeps: list[SpatialReadings], place: Path, noise: float) -> bool:
+    """Write and print the two bodies that bound any convex one; whether there is one."""
+    with waiting("fitting"):
+        found = convex_band(sweeps, deviations(sweeps, noise))
+    with output_folder(place) as folder:
+        terminal.show(*band_summary(found, sweeps[0].beam))
+        terminal.keep(folder / "object.json", band_document(found))
+        for name, body in (("inner", found.inner), ("outer", found.outer)):
+            terminal.keep(folder / f"{name}.ply", solid_ply(body.corners))
+        with waiting("drawing"):
+            inner, outer = (SweepScene.of(sweeps[0], one) for one in (found.inner, found.outer))
+            picture = sweep_in_space(inner, outer.faces)
+        terminal.keep(folder / "object.png", picture)
+    return found.explains
 
 
 def without_faults(readings: Readings, offset: float) -> Readings:

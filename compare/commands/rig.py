@@ -1,5 +1,6 @@
 """The command ``rig``: a rig's files become sweeps, and what is wrong with them is said."""
 
+import gc
 from pathlib import Path
 from typing import Annotated
 
@@ -34,8 +35,10 @@ def rig(
 
     passes = look_at_passes(files, read_rig(rig))
     with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
+        gc.freeze()  # what there is stays: a collection looks at the picture alone
         for one in passes:
             terminal.keep(folder / f"{one.name}.png", pass_picture(one))
+            gc.collect()  # a picture is a cycle, and those of ten passes hold 60 MB
         found = [repeats([one.readings for one in some]) for some in swept_alike(usable(passes))]
         terminal.show(*passes_summary(passes, found))
         for one in passes:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from scipy.interpolate import PchipInterpolator
-from scipy.stats import median_abs_deviation
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.correlated import estimate
@@ -84,7 +83,9 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     touching &= ~ends & (np.abs(mean[:, 0] - last) > _NEXT_TO_SNAP_OFF * abs(last - first))
     away, slopes = away[:, touching], slopes[:, touching]
     stations, count = away.shape[1], len(passes)
-    seen = [median_abs_deviation(np.diff(x, axis=0), axis=0) for x in away / scale]
+    steps = np.diff(away / scale, axis=1)
+    middle = np.median(steps, axis=1, keepdims=True)
+    seen = np.median(np.abs(steps - middle), axis=1)
     known = max(1e-12, float(np.median(seen)))
     unit, along = scale * known, np.linspace(-1, 1, stations)[:, None, None]
     zeros = [zero_uncertainty(one, scale) for one in passes]

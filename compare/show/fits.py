@@ -4,10 +4,13 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from analytic import CLAMP_READINGS, Calibration, FittedObject
+import numpy as np
+
+from analytic import CLAMP_READINGS, Beam, Calibration, FittedObject
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.problem.quantities import QUANTITIES
-from analytic.space import FittedBody
+from analytic.space import ConvexBand, FittedBody
+from analytic.space.from_clamp.hull import volume
 from analytic.space.from_clamp.noise import COMPONENTS
 from compare.show.document import Block, Table, Text
 from compare.show.numbers import quantity
@@ -84,6 +87,27 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
         )
 
 
+def band_summary(found: ConvexBand, beam: Beam) -> Iterator[Block]:
+    """What a terminal shows: how much of the body is known, and how well."""
+    inner, outer, cube = volume(found.inner), volume(found.outer), beam.length**3
+    yield Text(
+        f"{found.stations} contacts hold a convex body of {inner / cube:.3g} L^3 or more, and of "
+        f"{outer / cube:.3g} L^3 or less in the box around them"
+    )
+    line = f"over {found.seen:.0%} of the inner body contacts end the outer one"
+    if found.seen:
+        median = quantity(float(np.nanmedian(found.gaps)), "length", beam)
+        line += (
+            f": {median} above it in the median, {quantity(found.widest, 'length', beam)} at most"
+        )
+    yield Text(line)
+    if not found.explains:
+        yield Text(
+            "no convex body has all these contacts and normals, within noise: there are several, "
+            "it is dented, or friction, the vibrissa or the frame are not as stated"
+        )
+
+
 def calibration_document(calibration: Calibration) -> dict[str, Any]:
     """What ``calibration.json`` holds."""
     passes, correlation = calibration.passes, calibration.noise.correlation.tolist()
@@ -123,6 +147,21 @@ def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
         "chi_square": found.passes and found.passes.chi_square,
         "probability": found.passes and found.passes.probability,
         "band": {name: values.tolist() for name, values in found.band.items()},
+    }
+
+
+def band_document(found: ConvexBand) -> dict[str, Any]:
+    """What ``object.json`` holds of the two bodies, which are in files of their own."""
+    return {
+        "family": "convex",
+        "explains": found.explains,
+        "stations": found.stations,
+        "half_width": found.half_width,
+        "box": found.box.tolist(),
+        "inner_volume": volume(found.inner),
+        "outer_volume": volume(found.outer),
+        "seen": found.seen,
+        "widest": found.widest if found.seen else None,
     }
 
 

@@ -1,5 +1,6 @@
 """What the clamp of a vibrissa reads at any foot positions, by the closed form."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,7 +12,7 @@ from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import slopes_at, solve_beside
-from analytic.solver.general.sweep import solve
+from analytic.solver.general.sweep import AT_ONCE, solve
 
 _MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, x to -x
 
@@ -33,10 +34,13 @@ class Expected:
         found = self.readings.copy()
         leftward, stations = _to_the_left(case, foot_x)
         beam, vibrissa = leftward.beam, Vibrissa.of_case(leftward)
-        moved = leftward.poses.at(stations[self.loaded] / beam.length)
-        here = solve_beside(leftward.centreline, vibrissa, moved, self.places, self._slopes)
-        columns = to_columns(here, Units.of(beam))
-        found[:, self.loaded] = [columns[name] for name in CLAMP_READINGS]
+        loaded = np.flatnonzero(self.loaded)
+        for some in _pieces(len(loaded)):
+            moved = leftward.poses.at(stations[loaded[some]] / beam.length)
+            places, slopes = self.places[some], self._slopes[some]
+            here = solve_beside(leftward.centreline, vibrissa, moved, places, slopes)
+            columns = to_columns(here, Units.of(beam))
+            found[:, loaded[some]] = [columns[name] for name in CLAMP_READINGS]
         if case.sweep.direction == "right":
             found[:, self.loaded] *= _MIRRORED
         return found
@@ -45,7 +49,9 @@ class Expected:
     def _slopes(self) -> Floats:
         """What several cases beside this one start from."""
         case, _ = _to_the_left(self.case, np.empty(0))
-        return slopes_at(case.centreline, Vibrissa.of_case(case), self.places)
+        line, vibrissa = case.centreline, Vibrissa.of_case(case)
+        pieces = (self.places[some] for some in _pieces(len(self.places)))
+        return np.concatenate([slopes_at(line, vibrissa, some) for some in pieces])
 
 
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
@@ -62,6 +68,11 @@ def expected_readings(case: Case, foot_x: Floats) -> Expected:
     if case.sweep.direction == "right":
         found *= _MIRRORED
     return Expected(case, found, loaded, solved.places[loaded[touching]])
+
+
+def _pieces(stations: int) -> Iterator[slice]:
+    for first in range(0, max(stations, 1), AT_ONCE):
+        yield slice(first, first + AT_ONCE)
 
 
 def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:

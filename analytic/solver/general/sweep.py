@@ -1,6 +1,6 @@
 """A sweep of the general vibrissa at given stations."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +27,7 @@ from analytic.solver.general.stations import solve_places
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 _CONTOUR = 257  # places of a contour, of which the nearest to the foot is sought
 _SHARES = np.linspace(0, 1, 9)  # of a vibrissa, where it may be curved
+AT_ONCE = 4096  # stations: their intermediate results stay in the processor's cache
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -71,10 +72,7 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
     if len(paths) > 1:
         columns |= {name: np.full(len(p), np.nan) for name in SECOND_CONTACT}
     places = np.full((len(p), 3), np.nan)
-    for i, path in enumerate(paths):
-        here = holder == i
-        if not here.any():
-            continue
+    for path, here in _pieces(paths, holder):
         z, found = solve_places(path.contour, vibrissa, path, poses, p[here])
         touching = states_at(path.contour, z, vibrissa)
         if touching.inner is None:
@@ -90,6 +88,14 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         columns["phase"][here] = words["phase"]
         columns["status"][here] = np.where(found, words["status"], STATUS_NUMBER["diverged"])
     return Solved(columns, _events(paths, objects), held | lost, places[held | lost])
+
+
+def _pieces(paths: Sequence[Path], holder: Integers) -> Iterator[tuple[Path, Integers]]:
+    """Some stations of a path, then others."""
+    for i, path in enumerate(paths):
+        held = np.flatnonzero(holder == i)
+        for first in range(0, len(held), AT_ONCE):
+            yield path, held[first : first + AT_ONCE]
 
 
 def _on_it_again(

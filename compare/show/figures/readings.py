@@ -208,9 +208,10 @@ def pass_picture(one: Pass) -> Figure:
         draw(ax, foot_x, one.taken[i] / size, color=style.CANDIDATE, label="zero, taken off")
         kept = one.readings.values(name) / size
         draw(ax, foot_x, kept, **small, color=style.REFERENCE, label="kept")
-        for x in foot_x[cut]:
-            ax.axvline(x, color=style.CANDIDATE, linewidth=0.5, alpha=0.4)
         everywhere = ax.get_xaxis_transform()
+        ax.vlines(
+            foot_x[cut], 0, 1, style.CANDIDATE, linewidth=0.5, alpha=0.4, transform=everywhere
+        )
         ax.fill_between(
             foot_x, 0, 1, where=one.free, transform=everywhere, color=style.GREY, alpha=0.15
         )

@@ -19,6 +19,7 @@ from compare.show.figures.over_foot import in_unit, key_below, phase_handles, un
 from compare.show.scene import SweepScene, normals
 
 _SHAPES = 24  # drawn of a sweep
+_AROUND = 0.12  # opacity of what the body is inside of
 _DARK = 0.35  # how much darker a face is that looks away from the light
 _LIGHT = np.array([0.4, -0.2, -0.9]) / np.linalg.norm([0.4, -0.2, -0.9])
 _VIEW = {"elev": 12.0, "azim": -62.0}
@@ -30,13 +31,20 @@ LOADS = {"$F$ / ($EI/L^2$)": FORCE, "$M$ / ($EI/L$)": MOMENT}
 """Force and moment by the labels of their axes."""
 
 
-def sweep_in_space(scene: SweepScene) -> Figure:
-    """Draw the body, the vibrissa at some stations, the contacts found, and the readings."""
+def sweep_in_space(scene: SweepScene, around: Floats | None = None) -> Figure:
+    """Draw the body, the vibrissa at some stations, the contacts found, and the readings.
+
+    And, around the body, the triangles of one that it is inside of.
+    """
     readings = scene.readings
     figure = Figure(figsize=(style.PAGE_WIDTH, 0.8 * style.PAGE_WIDTH), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(1.8, 1))
     ax = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
     draw_scene(ax, scene)
+    if around is not None:
+        ax.add_collection3d(
+            Poly3DCollection(upright(around), facecolors=style.BLUE, alpha=_AROUND, linewidths=0)
+        )
     chosen = np.unique(np.linspace(0, len(scene.lines) - 1, _SHAPES).round().astype(int))
     colours = [style.PHASE_COLOURS[phase] for phase in scene.phase[chosen]]
     ax.add_collection3d(

@@ -1,5 +1,7 @@
 """Cases and contours that users bring, on the command line."""
 
+import json
+
 import pytest
 import trimesh
 
@@ -18,6 +20,31 @@ def test_named_cases(tmp_path, name):
     assert ("192 contact points from 200 stations" in found.stdout) == (name == "whisker")
     same = vibrissa("compare", name, "analytic.parquet", "--out", "compared", cwd=tmp_path)
     assert same.returncode == 0, same.stdout + same.stderr
+
+
+@pytest.mark.slow
+def test_any_convex_body_lies_between_two_meshes(tmp_path):
+    for name, z in (("one", 0.2), ("other", -0.2)):
+        (tmp_path / f"{name}.toml").write_text(
+            '[body]\nkind = "ellipsoid"\nsemi_axes = [1.0, 0.7, 1.6]\ncentre = [0, 1.1, 0]\n'
+            f"[path]\npoints = [[1.5, {z}], [-1.5, {z}]]\nstations = 40\n"
+        )
+        done = vibrissa("run", f"{name}.toml", "--engine", "exact", "--out", name, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    both = [f"{name}/analytic.parquet" for name in ("one", "other")]
+    done = vibrissa("reconstruct", *both, "--fit", "convex", "--out", "found", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "hold a convex body of" in done.stdout
+    inner, outer = (trimesh.load(tmp_path / f"found/{x}.ply") for x in ("inner", "outer"))
+    assert inner.is_watertight
+    assert outer.is_watertight
+    said = json.loads((tmp_path / "found/object.json").read_text())
+    assert inner.volume == pytest.approx(said["inner_volume"])
+    assert outer.volume == pytest.approx(said["outer_volume"])
+    assert (tmp_path / "found/object.png").exists()
+    loud = vibrissa("reconstruct", *both, "--fit", "convex", "--noise", 0.05, cwd=tmp_path)
+    assert loud.returncode == 2
+    assert "in one line or plane, within noise" in loud.stderr
 
 
 def test_a_vibrissa_that_locks_itself_is_said(tmp_path):
