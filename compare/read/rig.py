@@ -228,18 +228,14 @@ def _way(readings: Readings) -> Direction:
 
 def _turns(foot_x: Floats) -> list[int]:
     """Rows where the stage turns for good."""
+    steps = np.diff(foot_x)
+    if (steps >= 0).all() or (steps <= 0).all():
+        return []
+    from scipy.signal import find_peaks  # slow to load, and few sweeps turn
+
     least = _TURN * float(np.ptp(foot_x))
-    turns, way, farthest, begin = [], 0.0, 0, float(foot_x[0])
-    for row, x in enumerate(foot_x.tolist()):
-        ahead = way * (x - foot_x[farthest])
-        if ahead >= 0:
-            farthest = row
-        if not way and abs(x - begin) > least:
-            way, farthest = np.sign(x - begin), row
-        elif ahead < -least:
-            turns.append(farthest)
-            way, farthest = -way, row
-    return turns
+    found = (find_peaks(x, prominence=least, plateau_size=1)[1] for x in (foot_x, -foot_x))
+    return sorted(int(row) for one in found for row in one["right_edges"])
 
 
 def _in_order(readings: Readings, way: Direction) -> Readings:

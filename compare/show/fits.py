@@ -20,6 +20,12 @@ from compare.show.passes import consistency_line
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     """What a terminal shows: what was found, and how far it is to be trusted."""
     passes, si = calibration.passes, calibration.case.beam.si
+    if calibration.misfit_shows:
+        yield Text(
+            f"The fit leaves {calibration.misfit:.2g} times the noise: something else is not as the "
+            "case says (a sign, a unit, the object's place), and what follows is not to be trusted. "
+            "`vibrissa compare` looks for the cause."
+        )
     rows = []
     for name, found in calibration.found.items():
         unit = QUANTITIES["foot_x" if name == "offset" else name].dimension if si else ""
@@ -47,10 +53,6 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     if calibration.jitter:
         unit = " m" if si else ""
         yield Text(f"the foot jitters by {calibration.jitter:.2g}{unit}; the intervals know it")
-    if calibration.misfit_shows:
-        yield Text(
-            "something else is not as the case says: the intervals hold for noise, not for that"
-        )
 
 
 def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
