@@ -87,8 +87,7 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
         for line in faults_of(job.model, job.case.beam):
             terminal.print_line(line)
     elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
-        if job.case.friction == 0:  # else many states are at rest
-            _print_beside_rest(job, comparison, folder)
+        _print_beside_rest(job, comparison, folder)
     more = "" if asked.budget else "; --budget adds what the disagreement is made of"
     terminal.print_report(written, more)
     return comparison.agrees and possible and split.reached
@@ -140,6 +139,8 @@ def print_comparison(comparison: AnyComparison, parts: Parts | None) -> None:
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
     """Print what of a disagreement in motion is there at rest, and what the motion adds."""
+    if job.case.friction:
+        return  # at rest, many states are possible
     from compare.simulate.dispatch import at_rest
     from mujoco_models import simulate_sweep
 

@@ -22,9 +22,9 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     passes, si = calibration.passes, calibration.case.beam.si
     if calibration.misfit_shows:
         yield Text(
-            f"The fit leaves {calibration.misfit:.2g} times the noise: something else is not as the "
-            "case says (a sign, a unit, the object's place), and what follows is not to be trusted. "
-            "`vibrissa compare` looks for the cause."
+            f"The fit leaves {calibration.misfit:.2g} times the noise: something else is not as "
+            "the case says (a sign, a unit, the object's place), and what follows is not to be "
+            "trusted. `vibrissa compare` looks for the cause."
         )
     rows = []
     for name, found in calibration.found.items():

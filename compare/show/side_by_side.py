@@ -48,7 +48,7 @@ class SideBySide:
     ) -> "SideBySide":
         """Compare sweeps by name; those that were asked for may have given none."""
         against = {name: compare(reference, one) for name, one in sweeps.items()}
-        pairs = combinations(sweeps, 2)
+        pairs = combinations([name for name, one in against.items() if _settled(one)], 2)
         between = {(one, other): compare(sweeps[one], sweeps[other]) for one, other in pairs}
         asked = asked or [EngineOutcome(name) for name in sweeps]
         outcomes = [
@@ -94,7 +94,7 @@ def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
     apart, seconds = found.snap_off.difference, found.candidate.provenance.get("seconds")
     return replace(
         one,
-        rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
+        rms={n: found.disagreement[n].rms for n in CLAMP_READINGS} if _settled(found) else None,
         snap_off_apart=None if apart is None else apart / found.reference.running_unit[0],
         seconds_a_station=None if seconds is None else seconds / len(found.candidate.table),
         agrees=found.agrees,
@@ -102,8 +102,17 @@ def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
     )
 
 
+def _settled(found: Comparison) -> bool:
+    """Whether more stations are compared than are not to be trusted: else no figure says much."""
+    counts = found.alignment.counts
+    return counts["compared"] >= counts["untrusted"]
+
+
 def _causes(found: Comparison) -> Iterator[str]:
     """Why it disagrees, and why stations of its own are not to be trusted."""
+    if not _settled(found):
+        stations = len(found.candidate.table)
+        yield f"no figures: {found.stations} of {stations} stations can be compared"
     if not found.agrees:
         yield f"likely {found.likely}" if found.likely else "the readings alone do not show why"
     unsettled = found.candidate.provenance.get("unsettled") or {}
