@@ -58,7 +58,7 @@ def solve_places(path: Path, poses: Poses, p: Floats) -> tuple[Floats, Booleans]
     """Contour parameter, force and excess of the state at each parameter of the clamp's way.
 
     Newton's method starts from the cubic through the path's points and directions. Of many, on a
-    path so fine that the derivatives at its points tell those between, too.
+    path so fine that the derivatives at its points give those between, too.
     """
     if len(p) <= _MANY:
         return _solve_few(path, poses, p)
