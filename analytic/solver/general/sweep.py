@@ -28,7 +28,7 @@ from analytic.solver.general.stations import solve_places
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 _CONTOUR = 257  # places of a contour, of which the nearest to the foot is sought
 _SHARES = np.linspace(0, 1, 9)  # of a vibrissa, where it may be curved
-_LOOKS = 257  # states of a path; between two of so many nothing comes and goes
+_LOOKS = 257  # states of two contacts; between two of so many nothing comes and goes
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -144,7 +144,8 @@ def _statuses(
 ) -> Integers:
     """Which states on a path are ok, which stick and which touch again.
 
-    Of many some are looked at. Between two that are alike all are, elsewhere the change is sought.
+    Of many with two contacts, which are dear to look at, some are. Between two that are alike all
+    are, elsewhere the change is sought.
     """
 
     def looked_at(which: Integers) -> Integers:
@@ -155,7 +156,8 @@ def _statuses(
         return np.where(clear, held, STATUS_NUMBER["touches again"])
 
     order = np.argsort(p)
-    looks = np.linspace(0, len(p) - 1, min(len(p), _LOOKS)).astype(int)
+    count = len(p) if found.inner is None else min(len(p), _LOOKS)
+    looks = np.linspace(0, len(p) - 1, count).astype(int)
     looked = looked_at(order[looks])
     while (differ := np.flatnonzero((np.diff(looks) > 1) & (np.diff(looked) != 0))).size:
         middle = (looks[differ] + looks[differ + 1]) // 2
