@@ -40,7 +40,7 @@ class SlidingBranch:
 
     def at(self, case: Case, foot_x: Floats) -> Floats:
         """States at foot positions."""
-        z, known = solve_places(case.centreline, self.vibrissa, self.path, case.poses, foot_x)
+        z, known = solve_places(self.path, case.poses, foot_x)
         if not known.all():
             place = foot_x[int(np.argmin(known))] * case.beam.length
             raise ArithmeticError(f"no state is found at foot_x = {place:.6g}")

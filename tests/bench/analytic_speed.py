@@ -21,8 +21,10 @@ from analytic import (
     solve_contact,
     solve_sweep,
     solve_sweeps,
+    space,
 )
 from analytic.checks import boundary_value_problem, tip_angle_by_shooting
+from analytic.solver.general.sweep import solve
 from tests.bench.timing import least_seconds
 
 THIN = Beam(radius=0.0)
@@ -66,6 +68,17 @@ def main(quick: bool) -> None:
     console.print(f"a sweep with friction, elastic clamp and natural curvature: {ratio:.1f} times")
     events = least_seconds(lambda: find_events(case.profile, case.beam))
     console.print(f"its events alone, with the readings there: {1e3 * events:.1f} ms")
+    two, feet = (
+        Case(Beam(radius=0.0, natural_curvature=0.5), profile),
+        np.linspace(1.17, -1.58, many),
+    )
+    rate = many / least_seconds(lambda: solve(two, feet), 1)
+    console.print(f"two contacts at once, {many:,} stations: {rate:,.0f} a second")
+    path = space.FootPath([[1.1, 0.3], [-0.2, 0.1]], stations=many // 50)
+    ball = space.sphere(1.0, centre=(0, 1.4, 0))
+    rubbing = space.SpatialCase(THIN, body=ball, path=path, friction=0.3)
+    rate = many // 50 / least_seconds(lambda: space.solve_space(rubbing), 1)
+    console.print(f"friction in space, {many // 50:,} stations: {rate:,.0f} a second")
     for count in (many // 10, many):
         angles = np.deg2rad(np.linspace(-31, 30, count))
         tracemalloc.start()

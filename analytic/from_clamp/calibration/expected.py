@@ -12,8 +12,9 @@ from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import slopes_at, solve_beside
-from analytic.solver.general.sweep import AT_ONCE, solve
+from analytic.solver.general.sweep import solve
 
+_AT_ONCE = 4096  # stations: their intermediate results stay in the processor's cache
 _MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, x to -x
 
 
@@ -71,8 +72,8 @@ def expected_readings(case: Case, foot_x: Floats) -> Expected:
 
 
 def _pieces(stations: int) -> Iterator[slice]:
-    for first in range(0, max(stations, 1), AT_ONCE):
-        yield slice(first, first + AT_ONCE)
+    for first in range(0, max(stations, 1), _AT_ONCE):
+        yield slice(first, first + _AT_ONCE)
 
 
 def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:

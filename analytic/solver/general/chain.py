@@ -97,7 +97,7 @@ def _touched(
     high, low = float(path.p[0]), float(path.p[path.snap_off])
     for looks in _LOOKS:
         p = np.linspace(high, low, looks)
-        z, known = solve_places(contour, vibrissa, path, poses, p[1:])
+        z, known = solve_places(path, poses, p[1:])
         wrong = known & ~is_clear(contour, states_at(contour, z, vibrissa), others)
         if not wrong.any():
             return None

@@ -7,11 +7,12 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.poses import Pose, Poses
 from analytic.solver.general.pair import Pair
-from analytic.solver.general.path import Path
+from analytic.solver.general.path import Path, refined
 from analytic.solver.general.states import States, Vibrissa, misses, rates_at, states_at
 
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
 _ASIDE = 1e-6  # a state may lie so far beyond its cell: close to a fold p does not distinguish
+_MANY = 2000  # states: a finer path pays; so many at a time stay in the processor's cache
 _BALANCED = 1e-11  # L, rad; beyond, no state was found
 
 
@@ -31,34 +32,58 @@ def slopes_at(contour: Contour | Pair, vibrissa: Vibrissa, z: Floats) -> Floats:
 
 
 def solve_near(
-    contour: Contour | Pair, vibrissa: Vibrissa, pose: Pose, start: Floats
+    contour: Contour | Pair,
+    vibrissa: Vibrissa,
+    pose: Pose,
+    start: Floats,
+    slopes: Floats | None = None,
 ) -> tuple[Floats, Booleans]:
-    """Contour parameter, force and excess in each pose, and whether in balance."""
+    """Contour parameter, force and excess in each pose, and whether in balance.
+
+    What the derivatives nearly are may be given.
+    """
 
     def missed_at(z: Floats, which: Integers) -> Floats:
         here = Pose(*(values[which] for values in pose))
         return misses(states_at(contour, z, vibrissa), here)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        return slopes_at(contour, vibrissa, z)
+        return slopes_at(contour, vibrissa, z) if slopes is None else slopes[which]
 
     z, missed = solve(missed_at, jacobian, start)
     return z, missed <= _BALANCED * np.maximum(1.0, np.abs(pose.foot_x))
 
 
-def solve_places(
-    contour: Contour | Pair, vibrissa: Vibrissa, path: Path, poses: Poses, p: Floats
-) -> tuple[Floats, Booleans]:
+def solve_places(path: Path, poses: Poses, p: Floats) -> tuple[Floats, Booleans]:
     """Contour parameter, force and excess of the state at each parameter of the clamp's way.
 
-    Newton's method starts from the cubic through the path's points and directions.
+    Newton's method starts from the cubic through the path's points and directions. Of many, on a
+    path so fine that the derivatives at its points give those between, too.
     """
+    if len(p) <= _MANY:
+        return _solve_few(path, poses, p)
+    path, slopes = refined(path, poses)
+    parts = [
+        _solve_few(path, poses, few, slopes[..., :-1])
+        for few in np.array_split(p, 1 + len(p) // _MANY)
+    ]
+    z, found = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return z, found
+
+
+def _solve_few(
+    path: Path, poses: Poses, p: Floats, slopes: Floats | None = None
+) -> tuple[Floats, Booleans]:
     cells = path.cells(p)
-    guess = path.at(cells, path.share(cells, p, -1))
+    share = path.share(cells, p, -1)
+    guess, between = path.at(cells, share), None
+    if slopes is not None:
+        between = slopes[cells] + share[:, None, None] * (slopes[cells + 1] - slopes[cells])
     begin, way, length = path.z[cells], path.z[cells + 1] - path.z[cells], path.length(cells)
+    contour, vibrissa = path.contour, path.vibrissa
     scale = vibrissa.sizes(begin)
 
-    z, balanced = solve_near(contour, vibrissa, poses.at(p), guess[:, :-1])
+    z, balanced = solve_near(contour, vibrissa, poses.at(p), guess[:, :-1], between)
     there = np.column_stack([z, p])
     along = np.einsum("nk,nk->n", (there - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((there - guess) / scale, axis=1)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
@@ -21,13 +22,14 @@ from analytic.solver.general.chain import (
 )
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.path import EVENTS, Path, follow, located
-from analytic.solver.general.states import Vibrissa, rates_at, states_at
+from analytic.solver.general.states import States, Vibrissa, rates_at, states_at
 from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 _CONTOUR = 257  # places of a contour, of which the nearest to the foot is sought
 _SHARES = np.linspace(0, 1, 9)  # of a vibrissa, where it may be curved
-AT_ONCE = 4096  # stations: their intermediate results stay in the processor's cache
+AT_ONCE = 16_384  # stations: what is between them and their results needs little memory
+_LOOKS = 2000  # states of two contacts; between two of so many nothing comes and goes
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -72,16 +74,17 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
     if len(paths) > 1:
         columns |= {name: np.full(len(p), np.nan) for name in SECOND_CONTACT}
     places = np.full((len(p), 3), np.nan)
+    every = 1 + len(p) // _LOOKS
     for path, here in _pieces(paths, holder):
-        z, found = solve_places(path.contour, vibrissa, path, poses, p[here])
+        z, found = solve_places(path, poses, p[here])
         touching = states_at(path.contour, z, vibrissa)
         if touching.inner is None:
             places[here] = np.where(found[:, None], z, np.nan)
         solved = to_columns(touching, Units.of(beam))
-        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(path, z, poses, p[here])
+        which = _statuses(path, objects, touching, z, poses, p[here], every)
+        sticks = (solved["status"] == STATUS_NUMBER["ok"]) & (which == STATUS_NUMBER["sticks"])
         solved["status"][sticks] = STATUS_NUMBER["sticks"]
-        clear = is_clear(path.contour, touching, others_than(path.contour, objects))
-        solved = without(solved, ~clear, "touches again")
+        solved = without(solved, which == STATUS_NUMBER["touches again"], "touches again")
         words = {"phase": solved.pop("phase"), "status": solved.pop("status")}
         for name in solved.keys() - {"foot_x"}:
             columns[name][here] = np.where(found, solved[name], np.nan)
@@ -141,6 +144,40 @@ def _events(paths: Sequence[Path], objects: Sequence[Contour]) -> dict[str, floa
         if i is not None and not clear_state(paths, i, objects)[1]:
             points[name] = None
     return located(points | second_contacts(paths), path.p)
+
+
+def _statuses(
+    path: Path,
+    objects: Sequence[Contour],
+    found: States,
+    z: Floats,
+    poses: Poses,
+    p: Floats,
+    every: int,
+) -> Integers:
+    """Which states on a path are ok, which stick and which touch again.
+
+    Of many with two contacts, which are dear to look at, one in so many is. Between two that are
+    alike all are, elsewhere the change is sought.
+    """
+
+    def looked_at(which: Integers) -> Integers:
+        state = take(found, which)
+        clear = is_clear(path.contour, state, others_than(path.contour, objects))
+        slides = _slides(path, z[which], poses, p[which])
+        held = np.where(slides, STATUS_NUMBER["ok"], STATUS_NUMBER["sticks"])
+        return np.where(clear, held, STATUS_NUMBER["touches again"])
+
+    order = np.argsort(p)
+    looks = np.append(np.arange(0, len(p) - 1, 1 if found.inner is None else every), len(p) - 1)
+    looked = looked_at(order[looks])
+    while (differ := np.flatnonzero((np.diff(looks) > 1) & (np.diff(looked) != 0))).size:
+        middle = (looks[differ] + looks[differ + 1]) // 2
+        looked = np.insert(looked, differ + 1, looked_at(order[middle]))
+        looks = np.insert(looks, differ + 1, middle)
+    statuses = np.empty_like(order)
+    statuses[order] = looked[np.searchsorted(looks, np.arange(len(p)))]
+    return statuses
 
 
 def _slides(path: Path, z: Floats, poses: Poses, p: Floats) -> Booleans:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import Legendre, legendre
+from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import cross
@@ -36,6 +37,7 @@ _WILD = 1.0  # L and rad, of any of them
 # Of its last step; where the force is so small that rounding leaves more, what that leaves.
 _EXACT, _ROUNDING = 1e-12, 1e-7
 _LEFT = 1e-10  # L, rad and of friction over the normal force: of the polynomials' last terms
+_SHARE = 1e-15  # of a panel, to which a place on it is enclosed
 _AT_REST = 1e-15  # of the equations, by the extent
 
 
@@ -48,6 +50,15 @@ POINTS = _radau()
 """Shares of a panel: its begin, and Radau's points with its end."""
 _SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
 _SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
+
+
+def _legendre(share: float) -> Floats:
+    """Legendre's polynomials at a share of a panel; NumPy's take twenty times as long for one."""
+    x = 2 * share - 1
+    found = [1.0, x]
+    for n in range(1, _POINTS):
+        found.append(((2 * n + 1) * x * found[n] - n * found[n - 1]) / (n + 1))
+    return np.array(found)
 
 
 class Law(NamedTuple):
@@ -120,29 +131,32 @@ class Panel(NamedTuple):
     by: Floats  # weights of the state's vector: what grows along the panel
     reach: float
     states: list[Sliding]  # at `POINTS`
-    vectors: Floats  # of these
+    series: Floats  # of their vectors, by Legendre's polynomials
+    rates: Floats  # of what moves, likewise
 
     @property
     def coarse(self) -> float:
         """How much its polynomials leave, over what they may."""
-        return float(np.abs(_SERIES[-1] @ self.vectors).max()) / _LEFT
+        return float(np.abs(self.series[-1]).max()) / _LEFT
 
-    def share_at(self, travel: float) -> float:
-        """Where the foot has come so far; it goes on until there."""
-        series = _SERIES @ self.vectors[:, -1]
-        series[0] -= travel
-        roots = legendre.legroots(series)
-        real = roots[np.abs(roots.imag) < 1e-6].real
-        return float((real[np.argmin(np.abs(real - np.clip(real, -1, 1)))] + 1) / 2)
+    def share_at(self, travel: float, last: float) -> float:
+        """Where the foot has come so far; it goes on until the last share, at least."""
 
-    def beyond(self, shares: Floats) -> Floats:
-        """Vectors of its polynomials, also past its end."""
-        return np.asarray(legendre.legvander(2 * shares - 1, _POINTS) @ _SERIES @ self.vectors)
+        def ahead(share: float) -> float:
+            return float(_legendre(share) @ self.series[:, -1]) - travel
+
+        if ahead(0.0) >= 0:
+            return 0.0
+        return float(brentq(ahead, 0.0, last, xtol=_SHARE)) if ahead(last) > 0 else last
+
+    def beyond(self, share: float) -> Floats:
+        """The vector of its polynomials, also past its end."""
+        return np.asarray(_legendre(share) @ self.series)
 
     def at(self, share: float, travel: float | None = None) -> Sliding:
         """The state at a share of the panel, or where the foot has come so far."""
         tangent = self.states[-1].contact.tangent
-        near = state_of(self.scene, self.beyond(np.array([share]))[0], tangent)
+        near = state_of(self.scene, self.beyond(share), tangent)
         by, amount = self.by, float(self.by @ self.states[0].vector) + share * self.reach
         if travel is not None:
             by, amount = BY_TRAVEL, travel
@@ -151,8 +165,7 @@ class Panel(NamedTuple):
 
     def velocity(self, share: float, state: Sliding) -> tuple[Floats, float]:
         """Of the vibrissa's point along the body, and the foot's speed, along the panel."""
-        slopes = 2 * legendre.legvander(np.array([2 * share - 1]), _POINTS - 1)[0]
-        grows = slopes @ legendre.legder(_SERIES @ _moving(self.states)) / self.reach
+        grows = _legendre(share)[:-1] @ self.rates
         return grows[:3] - grows[3] * state.end, float(grows[4])
 
 
@@ -169,7 +182,7 @@ def panel(
     if before is None:
         vectors = start.vector + np.outer(reach * POINTS[1:], by)
     else:
-        vectors = before.beyond(1 + reach / before.reach * POINTS[1:])
+        vectors = np.array([before.beyond(1 + reach / before.reach * x) for x in POINTS[1:]])
     states = [state_of(scene, vector, start.contact.tangent) for vector in vectors]
     size = np.inf
     for _ in range(_STEPS):
@@ -190,8 +203,9 @@ def panel(
         ]
         if size <= _EXACT or (size <= _ROUNDING and size > last / 4):
             found = [start, *states]
-            vectors = np.array([state.vector for state in found])
-            return Panel(scene, law, by, reach, found, vectors)
+            series = _SERIES @ np.array([state.vector for state in found])
+            rates = np.asarray(2 * legendre.legder(_SERIES @ _moving(found)) / reach, dtype=float)
+            return Panel(scene, law, by, reach, found, series, rates)
     return None
 
 

@@ -69,11 +69,11 @@ def loaded_part(rotation: float, alpha: float) -> Loaded:
     w, a = np.array(rotation), np.array(alpha)
     with np.errstate(all="ignore"):  # beyond an upright or level surface: not finite, and no state
         integrals = span(w, a)
-        up, across = frame(integrals, a)
-        height, reach = tip_rates(w, integrals, a)
+        end = frame(integrals, a)
+        height, reach = tip_rates(w, integrals, a, end)
         by_rotation = span_by_excess(integrals, w, a)
         by_alpha = span_by_alpha(integrals, by_rotation, a)
-        place = np.array([float(up), float(across)]) / integrals.q
+        place = np.array(end) / integrals.q
     q = float(integrals.q)
     return Loaded(
         q,

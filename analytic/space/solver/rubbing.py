@@ -76,7 +76,7 @@ class Rubbing(Walker[Rubbed]):
                     at = max(at, self._way.next_clear(at) or at)
                 return at, contact._replace(state=stretch.last, stretch=stretch), False
             stretch = following
-        share = min(stretch.panel.share_at(to), stretch.end)
+        share = stretch.panel.share_at(to, stretch.end)
         state = stretch.panel.at(share, to)
         velocity, speed = stretch.panel.velocity(share, state)
         return to, Rubbed(state, velocity / speed, stretch), True

@@ -1,5 +1,6 @@
 """The sweep in space: every station solved, checked and put into one table."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
@@ -73,12 +74,16 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     with threadpool_limits(1):  # the matrices are small
         walker = Rubbing(scene, way, case.friction) if case.friction else Gliding(scene, way)
         walked = walker.along(travel / length)
+    feet = case.path.at(travel)
+    touching = [contact is not None for contact in walked.contacts]
+    held = [one for one in walked.contacts if one is not None]
+    missed = iter(_missed([_contact(one) for one in held], feet[touching] / length, scene))
     rows = [
-        _row(contact, way.foot(at / length), scene, beam) if contact else _free(status)
-        for contact, status, at in zip(walked.contacts, walked.statuses, travel, strict=True)
+        _row(one, next(missed), scene, beam) if one else _free(status)
+        for one, status in zip(walked.contacts, walked.statuses, strict=True)
     ]
     table = pd.DataFrame(rows, columns=[*_COLUMNS, *(_RUBBED if case.friction else ())])
-    foot = dict(zip(FOOT, case.path.at(travel).T, strict=True))
+    foot = dict(zip(FOOT, feet.T, strict=True))
     table = pd.concat([pd.DataFrame({"travel": travel, **foot}), table], axis=1)
     provenance = {**case.provenance(), "engine": _engine(), "events": stated(case, walked.events)}
     tangent = case.path.clamp_tangent
@@ -86,13 +91,16 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     return _with_certificate(readings) if certified else readings
 
 
-def _row(held: Contact | Rubbed, foot: Floats, scene: Scene, beam: Beam) -> dict[str, object]:
-    """One station that touches; its foot is the one that was asked for."""
-    contact = held if isinstance(held, Contact) else held.state.contact
+def _contact(held: Contact | Rubbed) -> Contact:
+    return held if isinstance(held, Contact) else held.state.contact
+
+
+def _row(held: Contact | Rubbed, missed: float, scene: Scene, beam: Beam) -> dict[str, object]:
+    """One station that touches."""
+    contact = _contact(held)
     plane, spot = contact.plane, contact.spot
     force = -contact.force * plane.normal
     moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
-    missed = _missed(contact, foot, scene)
     row: dict[str, object] = {
         "phase": "tangent" if contact.tangent else "tip",
         **dict(zip(FORCE, force * beam.force_unit, strict=True)),
@@ -113,19 +121,21 @@ def _row(held: Contact | Rubbed, foot: Floats, scene: Scene, beam: Beam) -> dict
     return row
 
 
-def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
-    """From the clamp back to the contact: place, arc length, distance from the body."""
-    plane = contact.plane
-    force, moment = contact.force, np.sqrt(contact.force) * contact.loaded.moment
-    sensed = np.array([0.0, -force * np.sin(plane.alpha), force * np.cos(plane.alpha), moment])
-    found = contact_bent_right(sensed[:, None])
-    axis = foot + found.xi[0] * plane.lateral + found.eta[0] * plane.tangent
-    extent = max(1.0, float(np.abs(foot).max()))
-    return max(
-        float(np.abs(axis - contact.centre).max()) / extent,
-        abs(float(found.arc_length[0]) - contact.arc_length),
-        contact.arc_length - 1,
-    )
+def _missed(contacts: Sequence[Contact], feet: Floats, scene: Scene) -> Floats:
+    """From the clamp back to the contacts: place, arc length, distance from the body."""
+    force = np.array([contact.force for contact in contacts])
+    moment = np.sqrt(force) * [contact.loaded.moment for contact in contacts]
+    alpha = np.array([contact.plane.alpha for contact in contacts])
+    lateral = np.array([contact.plane.lateral for contact in contacts]).reshape(-1, 3)
+    centres = np.array([contact.centre for contact in contacts]).reshape(-1, 3)
+    arc_length = np.array([contact.arc_length for contact in contacts])
+    sensed = np.array([0 * force, -force * np.sin(alpha), force * np.cos(alpha), moment])
+    found = contact_bent_right(sensed)
+    axis = feet + found.xi[:, None] * lateral + np.multiply.outer(found.eta, scene.tangent)
+    extent = np.maximum(1.0, np.abs(feet).max(axis=1, initial=0.0))
+    apart = np.abs(axis - centres).max(axis=1, initial=0.0) / extent
+    shorter = np.abs(found.arc_length - arc_length)
+    return np.asarray(np.max([apart, shorter, arc_length - 1], axis=0))
 
 
 def _free(status: str) -> dict[str, object]:

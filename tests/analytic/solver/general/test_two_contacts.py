@@ -83,6 +83,25 @@ def test_events(natural):
     np.testing.assert_allclose(corners.force_y, ROWS["F_Ay"].iloc[-1], **EXACT)
 
 
+@pytest.mark.parametrize(
+    ("case", "statuses"),
+    [
+        (Case(thin(0.5), CORNERS), {"ok"}),
+        (Case(thin(0.5), CORNERS, friction=0.1), {"ok", "sticks"}),
+    ],
+)
+def test_many_stations_are_solved_as_few_are(case, statuses):
+    """Of many the path is finer, and not each is looked at; observed 3e-13."""
+    foot_x = np.linspace(*case.way[[0, -1]], 4000)
+    many, few = at_feet(case, foot_x), at_feet(case, foot_x[::40])
+    assert statuses == set(many["status"])
+    for column in few:
+        if few[column].dtype == float:
+            np.testing.assert_allclose(many[column][::40], few[column], **EXACT)
+        else:
+            assert (many[column].to_numpy()[::40] == few[column].to_numpy()).all()
+
+
 @pytest.mark.parametrize("end", ["second_contact_start", "second_contact_end"])
 def test_one_contact_follows_smoothly_from_two(end):
     """Where the inner force is nothing, both have the same readings; and they go on steadily."""

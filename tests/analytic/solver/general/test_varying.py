@@ -163,7 +163,7 @@ def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
             found = None if i is None else path.p[i]
             assert found == pytest.approx(plain.provenance["events"][event], abs=1e-13)
     held = (plain.table["phase"] != "free").to_numpy()
-    z, found = solve_places(case.centreline, vibrissa, path, case.poses, case.foot_x[held])
+    z, found = solve_places(path, case.poses, case.foot_x[held])
     states = states_of(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     assert found.all()
     # 2e-13: each is exact to a few roundings of forces of up to 20.
