@@ -21,7 +21,7 @@ from compare.read.runs import EngineOutcome
 from compare.show.document import Film, Text
 from compare.show.plane_page import plane_summary
 from compare.show.report import write_report
-from compare.show.side_by_side import SideBySide, summary, write_side_by_side
+from compare.show.side_by_side import SideBySide, reasons, summary, write_side_by_side
 from compare.show.spatial_page import spatial_summary
 from engines import Outcome, list_engines
 from engines.apart import sweep_apart
@@ -165,6 +165,7 @@ def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_bu
     outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
     if not isinstance(exact, Readings):
+        terminal.show(*reasons(_rows(outcomes)))
         return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
     budget = None
     if with_budget and "mujoco" in sweeps:
@@ -192,9 +193,6 @@ def _swept(job: Job, folder: Path) -> Sequence[Outcome]:
             if found[-1].readings is not None:
                 found[-1].readings.write(folder / f"{name}.parquet")
             advance()
-    for one in found:
-        if one.readings is None:
-            terminal.print_line(f"{one.engine}: {one.trouble}")
     if all(one.readings is None for one in found):
         raise InputError(
             "engine", ", ".join(job.engines), "one that sweeps the case",

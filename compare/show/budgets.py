@@ -55,8 +55,9 @@ def _parts_table(found: Budget | MotionBudget) -> Table:
     checks = found.checks if isinstance(found, Budget) else {}
     for name, sizes in checks.items():
         rows.append((f"{name}, closed form alone", *map(short, sizes.values())))
+    near = " (next to the snap-off, too)" if isinstance(found, Budget) else ""
     return Table(
-        f"Root mean square and uncertainty over {found.stations} stations, {_RMS}",
+        f"Root mean square and uncertainty over {found.stations} stations{near}, {_RMS}",
         ("part", *CLAMP_READINGS),
         rows,
         blamed=[i for i, name in enumerate(found.parts) if name == found.blame],

@@ -12,7 +12,7 @@ from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
 from compare.show.budgets import left_over
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
 from compare.show.numbers import percent, short
-from compare.show.side_by_side import outcomes_table, parts_table
+from compare.show.side_by_side import outcomes_table, parts_table, reasons
 
 
 def runs_document(folder: Path) -> Document:
@@ -131,6 +131,7 @@ def _engines(records: Sequence[EnginesRecord]) -> Iterator[Block]:
     splits = {one.case: one.split for one in records if one.split is not None}
     yield Items([f"{case}: {found.sentence}" for case, found in splits.items()])
     yield outcomes_table({one.case: one.engines for one in records})
+    yield from reasons(engine for one in records for engine in one.engines)
     if splits:
         yield parts_table({case: found.parts() for case, found in splits.items()})
     yield Text(

@@ -1,6 +1,6 @@
 """Sweeps of one case side by side, of engines or from files: one page, one table, one picture."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -16,7 +16,7 @@ from compare.explain.budget import Budget
 from compare.explain.split import Split, split
 from compare.read.runs import EngineOutcome
 from compare.show import style
-from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
+from compare.show.document import Block, Document, Items, Picture, Table, Text, Verdict, sections
 from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.html import html
 from compare.show.numbers import short
@@ -158,6 +158,7 @@ def _named(reference: Readings) -> str:
 def summary(found: SideBySide) -> Iterator[Block]:
     """Each sweep against the reference and each other, and what their differences are made of."""
     yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
+    yield from reasons(found.outcomes)
     yield from _between(found)
     if found.parts():
         yield parts_table({found.case: found.parts()})
@@ -175,14 +176,22 @@ def outcomes_table(
 
 def _outcome(one: EngineOutcome) -> tuple[str, ...]:
     seconds = one.seconds_a_station
-    said = ("agrees" if one.agrees else "disagrees", one.likely)
     return (
         one.label,
         *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
         short(one.snap_off_apart),
         "none" if seconds is None else f"{1e3 * seconds:.2g}",
-        one.trouble or "; ".join(filter(None, said)),
+        "no readings" if one.trouble else "agrees" if one.agrees else "disagrees",
     )
+
+
+def reasons(found: Iterable[EngineOutcome]) -> Iterator[Items]:
+    """Why sweeps are missing, disagree, or are not to be trusted everywhere."""
+    said = [
+        f"{one.name}: {one.trouble or one.likely}" for one in found if one.trouble or one.likely
+    ]
+    if said:
+        yield Items(said)
 
 
 def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
@@ -221,6 +230,7 @@ def _between(found: SideBySide) -> Iterator[Table]:
 
 def _sweeps(found: SideBySide) -> Iterator[Block]:
     yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
+    yield from reasons(found.outcomes)
     yield from _between(found)
     if any(one.role for one in found.outcomes):
         yield Picture(

@@ -14,6 +14,7 @@ from compare.show.side_by_side import (
     SideBySide,
     error_against_time,
     outcomes_table,
+    reasons,
     side_by_side_document,
 )
 from tests.compare.command import vibrissa
@@ -81,13 +82,27 @@ def many(exact):
     return SideBySide.of(exact, {"mine": mine}, asked, case="parabola")
 
 
+def test_of_few_settled_stations_there_are_no_figures(exact):
+    """One station in contact may agree to any digit."""
+    bad = exact.table.assign(status="unsettled")
+    bad.loc[:20, "status"] = "ok"
+    found = SideBySide.of(exact, {"mine": replace(exact, table=bad)}, [EngineOutcome("mine")])
+    (one,) = found.outcomes
+    assert one.rms is None
+    assert one.likely.startswith("no figures: ")
+    assert "stations can be compared" in one.likely
+
+
 def test_cause_and_lack_of_time_are_in_table_page_and_picture(many):
     (row,) = outcomes_table({many.case: many.outcomes}).rows
     assert row[0] == "mine 1.2, other model"
     assert row[-2] == "none"
-    assert row[-1].startswith("disagrees; likely ")
-    assert row[-1].endswith("3 stations unsettled, mostly as it sleeps")
-    assert row[-1] in html(side_by_side_document(many)).replace("&#39;", "'")
+    assert row[-1] == "disagrees"
+    (listed,) = reasons(many.outcomes)
+    (why,) = listed.said
+    assert why.startswith("mine: likely ")
+    assert why.endswith("3 stations unsettled, mostly as it sleeps")
+    assert why in html(side_by_side_document(many)).replace("&#39;", "'")
     figure = error_against_time(many)
     assert len(figure.axes[0].lines) == len(CLAMP_READINGS)
     assert [text.get_text() for text in figure.axes[0].texts] == ["mine, no time"]
