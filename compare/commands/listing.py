@@ -40,6 +40,8 @@ def _cases() -> Iterator[str]:
         case = named_case(name)
         beyond = beyond_the_paper(case.beam, case.support)
         parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
+        if case.friction:
+            parts.append("runs with --engine exact, or --motion")
         if isinstance(case.sweep, Whisk):
             foot, start, stop, _ = astuple(case.sweep)
             parts.append(f"foot at {foot:g} L, its clamp turns from {start:g} to {stop:g} rad")
