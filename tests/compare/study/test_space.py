@@ -12,7 +12,7 @@ from analytic.space import FootPath, SpatialCase, reconstruct_space, solve_space
 from compare import compare
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.work.perform import perform, perform_together
+from compare.study.work.perform import perform, perform_all
 from mujoco_models import SpatialSettings, simulate_space
 
 LEANING = """
@@ -59,7 +59,7 @@ def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
     plan = plan_of(LEANING)
     assert len(plan) == 16
     recipe = plan.study.recipe
-    rows = [result.row for result in perform_together(recipe, list(plan)[4:7])]
+    rows = [result.row for result in perform_all(recipe, list(plan)[4:7])]
     for run, row in zip(list(plan)[4:7], rows, strict=True):
         at = run.parameters
         assert row["outcome"] == "done", row["reason"]

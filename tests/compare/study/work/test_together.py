@@ -2,7 +2,7 @@
 
 import pytest
 
-from compare.study.work.perform import perform, perform_together
+from compare.study.work.perform import perform, perform_all
 from tests.compare.study.studies import planned
 
 EVENTS = """
@@ -24,7 +24,7 @@ noise.relative = 0.01
 def test_rows_are_those_of_runs_one_by_one(tmp_path, text):
     plan = planned(tmp_path, text)
     recipe, runs = plan.study.recipe, list(plan)
-    together = [result.row for result in perform_together(recipe, runs)]
+    together = [result.row for result in perform_all(recipe, runs)]
     alone = [perform(recipe, run).row for run in runs]
     assert {row["outcome"] for row in alone} == {"done", "bad-input"}
     for one, other in zip(together, alone, strict=True):
