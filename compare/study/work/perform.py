@@ -31,17 +31,8 @@ Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed
 Row: TypeAlias = dict[str, Any]
 
 _VERSIONS = ("vibrissa-testbed", "mujoco", "numpy", "scipy")
-_ABOUT = {
-    "seconds": "double",
-    "seconds_candidate": "double",
-    **{f"version_{name.replace('-', '_')}": "string" for name in _VERSIONS},
-    "version_python": "string",
-    "system": "string",
-    "host": "string",
-}
 # Of the stations; in motion the first contact and the last bounce, whatever the settings.
 _BOUNCES = 0.1
-_IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
 
 
 @dataclass(frozen=True)
@@ -54,19 +45,6 @@ class Result:
 
 class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
     """The run has used up its time."""
-
-
-def columns(study: Study) -> dict[str, str]:
-    """List the columns of a study's rows."""
-    types = {bool: "bool", int: "int64", float: "double", str: "string"}
-    found = dict(_IDENTITY)
-    for axis in study.crossed:
-        for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):
-            kinds = {types[type(value)] for value in values}
-            found[key] = kinds.pop() if len(kinds) == 1 else "double"
-    for record in study.record:
-        found |= (metrics.COLUMNS_IN_SPACE if study.in_space else metrics.COLUMNS)[record]
-    return found | {"seed": "int64"} | _ABOUT
 
 
 def perform_all(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:

@@ -14,8 +14,8 @@ from analytic import Readings
 from compare.commands.output import Ended, ended_by_signals
 from compare.study.keep.reading import read_rows
 from compare.study.keep.store import PLAN_FILE, TABLE_FILE
-
-COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
+from tests.compare.processes import children, wait, wait_for_end
+from tests.compare.study.studies import COMMAND
 
 # Says of every station that it is done, so that a test knows when to end the sweep.
 ANNOUNCED = """
@@ -46,18 +46,6 @@ for command in " ".join(sys.argv[1:]).split(" then "):
         raise AssertionError(command)
 """
 PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-
-
-def alive(process):
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
-
-
-def children(process):
-    tasks = Path(f"/proc/{process}/task").glob("*/children")
-    return [int(child) for file in tasks for child in file.read_text().split()]
 
 
 def stored(folder):
@@ -97,18 +85,13 @@ def test_a_sweep_that_is_ended_keeps_its_stations(tmp_path, way, said):
 def test_a_budget_that_is_ended_leaves_no_process_and_nothing_unfinished(tmp_path, way):
     words = ["run", "catenary", "--budget", "--stations", "20000", "--out", "out"]
     with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
-        end = time.monotonic() + 120
-        while not (workers := children(process.pid)):
-            assert time.monotonic() < end
-            time.sleep(0.1)
+        wait(lambda: children(process.pid))
+        workers = children(process.pid)
         time.sleep(2)  # at work, or just about to start
-        workers = {*workers, *children(process.pid)}
+        workers += children(process.pid)
         process.send_signal(way)
-        begin = time.monotonic()
         _, error = process.communicate(timeout=60)
-    while any(map(alive, workers)):
-        assert time.monotonic() < begin + 60
-        time.sleep(0.1)
+    wait_for_end(workers)
     if way != signal.SIGKILL:
         assert process.returncode == 2
         assert len(error.splitlines()) == 1, error
@@ -125,10 +108,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
     )
     words = ["study", "grid.toml", "--out", "out", "--workers", "1"]
     with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
-        end = time.monotonic() + 120
-        while stored(tmp_path / "out") < 5:
-            assert time.monotonic() < end
-            time.sleep(0.05)
+        wait(lambda: stored(tmp_path / "out") >= 5)
         workers = children(process.pid)
         process.send_signal(way)
         _, error = process.communicate(timeout=60)
@@ -136,10 +116,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
     assert len(error.splitlines()) == 1, error
     assert list(tmp_path.rglob(".*")) == []
     assert len(pd.read_parquet(tmp_path / "out" / TABLE_FILE)) >= 5
-    end = time.monotonic() + 60
-    while any(map(alive, workers)):
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    wait_for_end(workers)
 
 
 def test_nohup_is_respected(tmp_path):

@@ -34,24 +34,30 @@ def study(command):
     return partial(command, "study", "grid.toml", "--out", "out")
 
 
-def test_the_same_file_twice_does_no_work(folder, study):
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (EVENTS_ONLY, 0, ("40 runs, 40 of them done already", "nothing to do")),
+        (EVENTS_ONLY.replace("0.01]", "0.01, 0.015]"), 0, ("50 runs, 40 of them", "10 done")),
+        # A row that was done without the axis gets the value that it had.
+        (EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n", 0, ("80 runs, 40 of them", "40 done")),
+        (EVENTS_ONLY + "profile.c = [-0.8, 0.5]\n[beam]\n", 1, ("40 of them", "40 bad-input")),
+    ],
+    ids=["same", "longer", "further", "failing"],
+)
+def test_what_is_done_is_not_done_again(folder, study, text, code, said):
     first = study()
     assert (first.returncode, first.stderr) == (0, "")
     assert "40 done" in first.stdout
-    part = folder / "out" / TABLE_FILE
-    written = part.stat().st_mtime_ns
+    written = (folder / "out" / TABLE_FILE).stat().st_mtime_ns
+    (folder / "grid.toml").write_text(text)
     second = study()
-    assert "40 of them done already" in second.stdout
-    assert "nothing to do" in second.stdout
-    assert part.stat().st_mtime_ns == written
-
-
-def test_a_longer_axis_does_only_what_is_new(folder, study):
-    study()
-    (folder / "grid.toml").write_text(EVENTS_ONLY.replace("0.01]", "0.01, 0.015]"))
-    more = study()
-    assert "50 runs, 40 of them done already" in more.stdout
-    assert "10 done" in more.stdout
+    assert second.returncode == code
+    assert all(words in second.stdout for words in said)
+    assert ((folder / "out" / TABLE_FILE).stat().st_mtime_ns == written) == (text == EVENTS_ONLY)
+    runs = pd.read_parquet(folder / "out" / TABLE_FILE)
+    if "profile.c" in runs:
+        assert set(runs["profile.c"].value_counts()) == {40}
 
 
 def test_another_base_leaves_only_its_own_rows(folder, study):
@@ -72,22 +78,6 @@ def test_another_base_leaves_only_its_own_rows(folder, study):
     pd.testing.assert_frame_equal(
         again.sort_values("run", ignore_index=True), before.sort_values("run", ignore_index=True)
     )
-
-
-def test_a_further_axis_keeps_what_is_done_and_says_where_it_is(folder, study):
-    """A row that was done without the axis gets the value that it had."""
-    study()
-    (folder / "grid.toml").write_text(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
-    assert "80 runs, 40 of them done already" in study().stdout
-    runs = pd.read_parquet(folder / "out" / TABLE_FILE)
-    assert runs["profile.c"].value_counts().to_dict() == {-0.8: 40, -0.7: 40}
-
-
-def test_runs_that_fail_are_no_success(folder, study):
-    (folder / "grid.toml").write_text(EVENTS_ONLY + "profile.c = [-0.8, 0.5]\n[beam]\n")
-    done = study()
-    assert done.returncode == 1
-    assert "40 bad-input, 40 done" in done.stdout
 
 
 @pytest.mark.parametrize("name", ["../outside", "/tmp/outside", ".hidden", "a/b", ""])
