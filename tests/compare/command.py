@@ -17,6 +17,13 @@ class Done:
     stdout: str
     stderr: str
 
+    def ended(self, code: int, *said: str) -> "Done":
+        """With that exit code, and saying so."""
+        assert self.returncode == code, self.stdout + self.stderr
+        for part in said:
+            assert part in self.stdout
+        return self
+
     def refused(self, *said: str) -> None:
         """It was bad input, in one line that says so."""
         assert self.returncode == 2, self.stdout + self.stderr

@@ -303,8 +303,7 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path, request):
     ):
         compares(*arguments, code=code, says=says)
     for wrong in (["--engine", "drake"], ["--engine", "exact", "--budget"]):
-        done = vibrissa("run", "case.toml", *wrong, cwd=tmp_path)
-        done.refused()
+        vibrissa("run", "case.toml", *wrong, cwd=tmp_path).refused()
 
 
 RUN = """
@@ -352,5 +351,4 @@ def test_the_report_of_a_run_again(tmp_path, request):
         ("comparison.json", b'{"frame": "clamp"}'),
     ):
         (tmp_path / "out" / name).write_bytes(content)
-        done = vibrissa("report", "out", cwd=tmp_path)
-        done.refused(name)
+        vibrissa("report", "out", cwd=tmp_path).refused(name)

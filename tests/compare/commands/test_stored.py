@@ -43,8 +43,7 @@ def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     sweep.write(tmp_path / "analytic.parquet")
     sweep.write(tmp_path / "mujoco-rod.parquet")
     sweep.write(tmp_path / "mujoco-rod.partial.parquet")
-    done = vibrissa("report", ".", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    vibrissa("report", ".", cwd=tmp_path).ended(0)
     assert (tmp_path / "report.html").exists()
     assert read_run(tmp_path).tolerances == Tolerances()
 
@@ -69,8 +68,7 @@ def test_a_run_that_is_damaged_is_one_line(tmp_path, sweep, name, content, said)
     else:
         (tmp_path / name).write_bytes(content)
     there = set(tmp_path.iterdir())
-    done = vibrissa("report", tmp_path, cwd=tmp_path)
-    done.refused(said)
+    vibrissa("report", tmp_path, cwd=tmp_path).refused(said)
     assert set(tmp_path.iterdir()) == there
 
 

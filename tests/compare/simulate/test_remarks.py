@@ -176,18 +176,15 @@ def test_the_clamps_compliance_is_measured(tmp_path, chain, stiffness):
 
 def test_the_command_prints_and_writes_it(tmp_path):
     done = vibrissa("inspect", "sound-chain", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "sound chain, in its own units: sound" in done.stdout
+    done.ended(0, "sound chain, in its own units: sound")
     assert (tmp_path / "out" / "inspection.json").is_file()
-    done = vibrissa("inspect", "mistakes", cwd=tmp_path)
-    assert done.returncode == 1
+    done = vibrissa("inspect", "mistakes", cwd=tmp_path).ended(1)
     for word in ("link8", "rigid over a whole cell", "nothing can move", "time step", "3 degrees"):
         assert word in done.stdout
     (tmp_path / "beam.toml").write_text(
         '[beam]\nlength = "100 mm"\nflexural_rigidity = "6.44e-4 N m^2"\nradius = "0.25 mm"\n'
     )
-    done = vibrissa("inspect", "sound-chain", "--beam", "beam.toml", cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
+    done = vibrissa("inspect", "sound-chain", "--beam", "beam.toml", cwd=tmp_path).ended(0)
 
 
 @pytest.mark.parametrize(
@@ -195,8 +192,7 @@ def test_the_command_prints_and_writes_it(tmp_path):
     [("nope",), ("nope.xml",), ("sound-chain", "--foot", "x"), ("sound-chain", "--geoms", "y*")],
 )
 def test_what_is_wrong_is_one_line(tmp_path, words):
-    done = vibrissa("inspect", *words, cwd=tmp_path)
-    done.refused()
+    vibrissa("inspect", *words, cwd=tmp_path).refused()
 
 
 def test_the_shipped_models_have_the_faults_that_they_say():

@@ -175,15 +175,13 @@ stations = 10
 @pytest.mark.slow
 def test_the_command_the_rows_and_the_report(tmp_path, command):
     (tmp_path / "grid.toml").write_text(SIMULATED)
-    done = command("study", "grid.toml", "--out", "out", "--workers", "1")
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = command("study", "grid.toml", "--out", "out", "--workers", "1").ended(0)
     rows = pd.read_parquet(tmp_path / "out" / "runs.parquet")
     assert len(rows) == 4
     worst = rows.set_index(["mujoco.segments", "path.tangent.x"]).disagreement_moment_z_rms
     order = np.log2(worst[8] / worst[16])
     assert (order > 1.5).all()
-    done = command("report", "out")
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = command("report", "out").ended(0)
     page = (tmp_path / "out" / "report.html").read_text()
     assert "falls from" in page
     assert "mujoco.segments" in page
