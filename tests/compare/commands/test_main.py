@@ -2,9 +2,7 @@
 
 import io
 import json
-from dataclasses import replace
 
-import pandas as pd
 import pytest
 
 from tests.compare.command import vibrissa
@@ -102,27 +100,6 @@ def test_alone_it_prints_its_help_and_is_no_success(tmp_path):
     assert done.stdout.count("\n") > 10
     assert "What the clamp says:" in done.stdout
     assert done.stderr == ""
-
-
-def test_points_and_counts_have_the_phases_of_a_comparison(tmp_path):
-    from analytic import CLAMP_READINGS, Sweep, named_case, solve_sweep
-    from compare import classify
-    from compare.sense.noise import with_noise
-
-    exact = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=60)))
-    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 3)
-    noisy.table.loc[30, "status"] = "unsettled"
-    noisy.write(tmp_path / "noisy.csv")
-    done = vibrissa("reconstruct", "noisy.csv", "--out", "out", cwd=tmp_path).ended(0)
-    points = pd.read_csv(tmp_path / "out" / "points.csv")
-    judged = classify(noisy).phase
-    explained = (points["phase"] != "unexplained").to_numpy()
-    here = explained & (judged != "")
-    assert (points["phase"].to_numpy()[here] == judged[here]).all()
-    assert points["phase"][30] == "gap"
-    for phase in ("tip", "tangent"):
-        assert f"{(points['phase'] == phase).sum()} {phase}" in done.stdout
-    assert "1 not used" in done.stdout
 
 
 def test_a_terminal_shows_what_is_being_done(monkeypatch):

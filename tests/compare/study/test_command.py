@@ -4,13 +4,16 @@ import re
 import resource
 from functools import partial
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from analytic import CLAMP_READINGS
+from compare.align.frames import COMPONENTS
 from compare.study.grid.file import shipped_studies
 from compare.study.keep.database import NAME
 from compare.study.keep.store import TABLE_FILE
-from tests.compare.study.studies import EVENTS_ONLY, vibrissa
+from tests.compare.study.studies import EVENTS_ONLY, SIMULATED_IN_SPACE, vibrissa
 
 SIMULATED = """
 [study]
@@ -108,18 +111,27 @@ def test_a_dry_run_stores_nothing(folder, study):
 
 
 @pytest.mark.slow
-def test_a_simulated_study_and_its_report(folder, study, command):
-    (folder / "grid.toml").write_text(SIMULATED)
-    assert study().returncode == 0
-    done = command("report", "out")
-    assert (done.returncode, done.stderr) == (0, "")
+@pytest.mark.parametrize(
+    ("text", "least", "readings", "picture"),
+    [
+        (SIMULATED, 10, CLAMP_READINGS, "error-against-time"),
+        (SIMULATED_IN_SPACE, 8, COMPONENTS, "disagreement-mujoco.segments"),
+    ],
+)
+def test_a_simulated_study_and_its_report(folder, study, command, text, least, readings, picture):
+    (folder / "grid.toml").write_text(text)
+    study("--workers", "1").ended(0)
+    runs = pd.read_parquet(folder / "out" / TABLE_FILE)
+    assert len(runs) == 4
+    worst = runs.groupby("mujoco.segments")["disagreement_moment_z_rms"].mean()
+    assert 1.5 < np.log2(worst[least] / worst[2 * least]) < 2.5  # the chain is of second order
+    assert command("report", "out").ended(0).stderr == ""
     page = (folder / "out" / "report.html").read_text()
-    assert "Observed orders" in page
+    assert "Observed orders" in page and "falls from" in page and "mujoco.segments" in page
     assert 'src="http' not in page  # works offline
     orders = pd.read_csv(folder / "out" / "report" / "orders.csv")
-    refined = orders[orders["refined"] == "mujoco.segments"].set_index("reading")["order"]
-    assert 1.5 < refined["moment_z"] < 2.5  # the chain is of second order
-    assert (folder / "out" / "report" / "error-against-time.png").stat().st_size > 10_000
+    assert set(orders["reading"]) == set(readings)
+    assert (folder / "out" / "report" / f"{picture}.png").stat().st_size > 10_000
 
 
 def test_damage_is_reported_in_one_line(folder, study):
