@@ -67,7 +67,7 @@ def perform_alone(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
 def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float = 0.0) -> Result:
     """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
     begin = time.perf_counter() - spent
-    row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
+    row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters}
     readings: dict[str, Readings | SpatialReadings] = {}
     try:
         row |= _measure(study, run.parameters, readings, known)
@@ -79,7 +79,7 @@ def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float 
         row |= {"outcome": "diverged", "reason": str(error)}
     except Exception as error:
         row |= {"outcome": "failed", "reason": _one_line(error)}
-    row["seconds"] = time.perf_counter() - begin
+    row |= {"seconds": time.perf_counter() - begin, **_system()}
     return Result(row, readings if study.keep_readings else {})
 
 
