@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from analytic import Readings
+from analytic.problem.errors import require
 from compare.commands import terminal
 from compare.commands.sweeping import AnyReadings
 from compare.explain.budget import Budget
@@ -15,9 +16,9 @@ from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.show.report import budget_files
 from compare.simulate.budgets import measure_budget, require_rest
+from compare.simulate.dispatch import simulate
 from compare.simulate.fastest import Fastest, find_fastest
 from compare.simulate.target import Followed, follow_advice
-from mujoco_models import simulate_model, simulate_motion
 from mujoco_models.motion import Motion
 
 _SWEEPS = "sweeps of the budget"
@@ -96,9 +97,8 @@ def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: flo
     def move(speed: float) -> Readings:
         other = replace(motion, speed=speed)
         with terminal.progress(f"{speed:.3g} L/T1", job.stations) as advance:
-            if job.model is None:
-                return simulate_motion(job.case, other, job.settings, advance)
-            return simulate_model(job.case, job.model, other, job.settings, advance)
+            moved = simulate(job.case, job.settings, other, job.model, advance=advance)
+            return require("readings", moved, Readings, "in the plane")
 
     return find_fastest(job.solve(), runs, move, target)
 

@@ -82,10 +82,10 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
     split.write(folder)
     possible = job.kind == PLANE or printed(job, candidate, folder)
     if isinstance(job, Job) and job.model is not None:
-        from compare.simulate.inspection import faults_of
+        from compare.simulate.inspection import Inspection, measured_beam
 
-        for line in faults_of(job.model, job.case.beam):
-            terminal.print_line(line)
+        for fault in Inspection(measured_beam(job.model), job.case.beam).faults:
+            terminal.print_line(str(fault))
     elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
         _print_beside_rest(job, comparison, folder)
     more = "" if asked.budget else "; --budget adds what the disagreement is made of"

@@ -26,8 +26,7 @@ def print_sweep(readings: Readings | SpatialReadings) -> None:
     parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
     parts += _untrusted(readings)
     if "phase" in table:
-        counts = table["phase"].value_counts()
-        parts.append(", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts))
+        parts.append(_phases(table["phase"].value_counts()))
     parts += _of_the_plane(readings) if isinstance(readings, Readings) else _of_space(readings)
     for name in ("residual", "residual_boundary", "residual_moment"):
         if name in table:
@@ -36,18 +35,20 @@ def print_sweep(readings: Readings | SpatialReadings) -> None:
     print_line(f"{readings.source}: {'; '.join(parts)}")
 
 
+def _phases(counts: pd.Series) -> str:
+    return ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts)
+
+
 def _of_the_plane(readings: Readings) -> list[str]:
     """Its snap-off, its motion, and what is beyond the paper."""
-    table, snap_off = readings.table, readings.snap_off
+    table = readings.table
     unsettled = readings.provenance.get("unsettled", {})
     parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
     size, unit = readings.running_unit
-    place = 0.0 if snap_off is None else snap_off / size
-    parts.append(
-        "no snap-off"
-        if snap_off is None
-        else f"snap-off at {readings.running} = {place:.4f} {unit}"
-    )
+    if (at := readings.snap_off) is None:
+        parts.append("no snap-off")
+    else:
+        parts.append(f"snap-off at {readings.running} = {at / size:.4f} {unit}")
     if "kinetic_share" in table:
         touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
         parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
@@ -111,7 +112,7 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -
     touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
     words = [
         f"{touching} contact points from {len(found)} stations",
-        ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts),
+        _phases(counts),
     ]
     if "unexplained" in counts:
         words.append(f"{counts['unexplained']} with readings that no such vibrissa has")

@@ -43,9 +43,8 @@ class Fixed:
         """What was done, and what to expect."""
         names = " and ".join(str(file) for file in self.files)
         yield f"wrote {names}: {len(self.edits)} edits"
-        for remark in self.inspection.remarks:
-            if remark.kind == "fault":
-                yield f"  left, {remark.subject}: {remark.text}"
+        for fault in self.inspection.faults:
+            yield f"  left, {fault.subject}: {fault.text}"
         if self.inspection.sound:
             yield f"  expected at {SPEED} L/T1: {expected(self.inspection.found, SPEED)}"
 
@@ -57,9 +56,8 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
     for _ in range(_ROUNDS):
         new = [
             edit
-            for remark in inspection.remarks
-            if remark.kind == "fault"
-            for edit in remark.edits
+            for fault in inspection.faults
+            for edit in fault.edits
             if not (isinstance(edit, Insert) and edit in done)
         ]
         if not new and files:

@@ -30,14 +30,19 @@ class Inspection:
         return remarks(self.found, self.stated)
 
     @property
+    def faults(self) -> tuple[Remark, ...]:
+        """The remarks that are no mere notes."""
+        return tuple(remark for remark in self.remarks if remark.kind == "fault")
+
+    @property
     def sound(self) -> bool:
         """Whether there are no faults."""
-        return all(remark.kind != "fault" for remark in self.remarks)
+        return not self.faults
 
     def lines(self) -> Iterator[str]:
         """Figures and remarks, for reading."""
         found = self.found
-        faults = sum(remark.kind == "fault" for remark in self.remarks)
+        faults = len(self.faults)
         verdict = "sound" if self.sound else f"{faults} fault{'s' if faults > 1 else ''}"
         yield f"{found.model or 'model'}, in its own units: {verdict}"
         for name, text in self._figures():
@@ -94,9 +99,3 @@ def measured_beam(model: OwnModel) -> MeasuredBeam:
     """What the vibrissa of a user's model is."""
     names = {name: getattr(model, name) for name in ("foot", "force", "torque", "geoms", "site")}
     return inspect_model(model.file, **names)
-
-
-def faults_of(model: OwnModel, stated: Beam) -> list[str]:
-    """What is wrong with a user's model."""
-    inspection = Inspection(measured_beam(model), stated)
-    return [str(one) for one in inspection.remarks if one.kind == "fault"]

@@ -1,6 +1,7 @@
 """What to set in a model so that a fault is gone."""
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -91,35 +92,36 @@ def stiffened(found: MeasuredBeam, stiffness: dict[int, float]) -> tuple[Edit, .
     """Some joints with another stiffness each."""
     if found.springs != "joints":
         return ()
+    own = ((f"{k:.6g}", found.joints[i].numbers) for i, k in stiffness.items())
+    return _together("joint", "stiffness", own)
+
+
+def _together(
+    kind: str, attribute: str, values: Iterable[tuple[str, tuple[int, ...]]]
+) -> tuple[Edit, ...]:
+    """An edit for each value, of all that are to have it."""
     alike: dict[str, list[int]] = {}
-    for i, k in stiffness.items():
-        alike.setdefault(f"{k:.6g}", []).extend(found.joints[i].numbers)
-    return tuple(Edit("joint", (("stiffness", k),), (*mine,)) for k, mine in alike.items())
+    for value, numbers in values:
+        alike.setdefault(value, []).extend(numbers)
+    return tuple(Edit(kind, ((attribute, value),), (*mine,)) for value, mine in alike.items())
 
 
 def damped(found: MeasuredBeam) -> tuple[Edit, ...]:
     """Dampers in the same proportion, and as weak as they should be."""
+    if found.springs == "flex":
+        return ()
     weaker = _DAMPING / found.damping_ratio
-    alike: dict[str, list[int]] = {}
-    for joint in found.joints:
-        alike.setdefault(number(weaker * joint.damping), []).extend(joint.numbers)
-    return tuple(
-        Edit("joint", (("damping", c),), (*mine,))
-        for c, mine in alike.items()
-        if found.springs != "flex"
-    )
+    own = ((number(weaker * joint.damping), joint.numbers) for joint in found.joints)
+    return _together("joint", "damping", own)
 
 
 def evened(found: MeasuredBeam, off: dict[Geom, float]) -> tuple[Edit, ...]:
     """Geoms as thick as a straight course of radii, if all are round."""
     if not all(geom.size for geom in off):
         return ()
-    alike: dict[str, list[int]] = {}
-    for geom, thicker in off.items():
-        if abs(thicker) > _EVEN * found.length:
-            size = " ".join(f"{x:.5g}" for x in (geom.radius - thicker, *geom.size[1:]))
-            alike.setdefault(size, []).append(geom.number)
-    return tuple(Edit("geom", (("size", size),), (*mine,)) for size, mine in alike.items())
+    even = ((geom, geom.radius - by) for geom, by in off.items() if abs(by) > _EVEN * found.length)
+    sizes = ((geom, " ".join(f"{x:.5g}" for x in (r, *geom.size[1:]))) for geom, r in even)
+    return _together("geom", "size", ((size, (geom.number,)) for geom, size in sizes))
 
 
 def half_cell(found: MeasuredBeam) -> float:

@@ -2,7 +2,7 @@
 
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,21 +12,21 @@ from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan, PlannedRun
 from compare.study.grid.study import Study
 from compare.study.work.crews import local_crew
-from compare.study.work.execute import carry_out
+from compare.study.work.execute import Task, carry_out
 from compare.study.work.perform import Result
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 
-def spin(recipe: Study, run: PlannedRun) -> Result:
+def spin(recipe: Study, runs: Sequence[PlannedRun]) -> list[Result]:
     """A run of a fifth of a second of work."""
     end = time.process_time() + 0.2
     while time.process_time() < end:
         pass
-    return nothing(recipe, run)
+    return nothing(recipe, runs)
 
 
-def nothing(recipe: Study, run: PlannedRun) -> Result:
-    return Result({"run": run.id, "outcome": "done"})
+def nothing(recipe: Study, runs: Sequence[PlannedRun]) -> list[Result]:
+    return [Result({"run": run.id, "outcome": "done"}) for run in runs]
 
 
 def main(quick: bool) -> None:
@@ -58,8 +58,9 @@ def _plan(path: Path, runs: int) -> Plan:
     return Plan.of(load_study(str(path)))
 
 
-def _seconds(plan: Plan, workers: int, perform: Callable[[Study, PlannedRun], Result]) -> float:
+def _seconds(plan: Plan, workers: int, task: Task) -> float:
     begin = time.perf_counter()
-    crew = replace(local_crew(workers), perform=perform, together=None)
-    assert sum(1 for _ in carry_out(plan, plan.study.recipe, crew)) == len(plan)
+    crew = replace(local_crew(workers), task=task)
+    singly = replace(plan.study.recipe, beams=("chain",))  # as simulated runs are handed out
+    assert sum(1 for _ in carry_out(plan, singly, crew)) == len(plan)
     return time.perf_counter() - begin

@@ -104,7 +104,7 @@ def test_a_load_of_rounding_is_none():
         ({"tolerances": 2e-3}, "tolerances = a float"),
         ({"offset": np.nan}, "offset = nan"),
         ({"offset": "5 mm"}, "offset = '5 mm'"),
-        ({"noise": "none"}, "noise = none"),
+        *(({"noise": level}, "noise = ") for level in ("none", -0.1, 1.0, np.nan)),
     ],
 )
 def test_what_is_no_reading_is_an_error(given_, said):

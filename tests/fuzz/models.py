@@ -271,13 +271,13 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
             path.write_text(drawn_urdf(rng))
     try:
         before = Inspection(inspect_model(path))
-        found = {r.subject for r in before.remarks if r.kind == "fault"}
+        found = {fault.subject for fault in before.faults}
         planted = {name.split(",")[0] for name in outcome.model.planted}
         outcome.said = f"{sorted(found)}"
         if planted - found - _hidden(outcome.model):
             outcome.flags.append(f"missed {sorted(planted - found)}")
         after = fix(path, {}, before, path.with_name("fixed.xml"))
-        left = {r.subject for r in after.inspection.remarks if r.kind == "fault"}
+        left = {fault.subject for fault in after.inspection.faults}
         outcome.said += f" -> {sorted(left)}"
         if outcome.model.planted and left - _stays(outcome.model):
             outcome.flags.append(f"left {sorted(left)}")

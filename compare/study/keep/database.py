@@ -65,6 +65,12 @@ class Database:
         """Read all rows, one at a time."""
         return (row for _, row in _rows(self._connection) if row is not None)
 
+    @contextmanager
+    def as_it_is(self) -> Iterator[Callable[[], Iterator[Row]]]:
+        """Read the rows several times, always those that are there now."""
+        with _transaction(self._connection, "BEGIN"):
+            yield self.rows
+
     def done(self) -> set[str]:
         """Find the runs that need not be done again."""
         return {run for (run,) in self._connection.execute("SELECT run FROM runs WHERE done")}
@@ -117,8 +123,8 @@ def _connect(path: Path, mode: str = "mode=rwc") -> sqlite3.Connection:
 
 
 @contextmanager
-def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
-    connection.execute("BEGIN IMMEDIATE")
+def _transaction(connection: sqlite3.Connection, begin: str = "BEGIN IMMEDIATE") -> Iterator[None]:
+    connection.execute(begin)
     try:
         yield
     finally:

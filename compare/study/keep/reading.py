@@ -3,12 +3,11 @@
 from pathlib import Path
 
 import pandas as pd
-import pyarrow as pa
 
 from analytic import InputError
 from compare.study.grid.plan import Plan
 from compare.study.keep.database import NAME, Warn, read
-from compare.study.keep.store import PLAN_FILE, tables
+from compare.study.keep.store import PLAN_FILE, joined, numbers, tables
 
 
 def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
@@ -33,7 +32,8 @@ def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
     """
     if not (folder / NAME).is_file():
         raise InputError("DIR", folder, "the folder of a study", "`vibrissa study` makes one")
-    found = pa.concat_tables(tables(read(folder, warn), read_plan(folder)))
+    plan = read_plan(folder)
+    found = joined(tables(read(folder, warn), plan, numbers(plan)))
     # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
     frame: pd.DataFrame = found.to_pandas(use_threads=False)
     return frame.sort_values("run", ignore_index=True)

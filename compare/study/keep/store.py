@@ -6,7 +6,7 @@ disk.
 
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
@@ -18,7 +18,7 @@ from analytic import InputError
 from analytic.problem.files import whole_file, write_whole
 from compare.study.grid.plan import Plan
 from compare.study.keep.database import Database, Row, Warn
-from compare.study.work.perform import Result, columns
+from compare.study.work.perform import Result
 
 PLAN_FILE = "study.json"
 TABLE_FILE = "runs.parquet"
@@ -53,7 +53,8 @@ class Store:
         with _in_one_line(self._folder):
             table = self._folder / TABLE_FILE
             if self._is_new or not table.is_file():
-                write_table(table, self._database.rows(), self._plan)
+                with self._database.as_it_is() as rows:
+                    write_table(table, rows, self._plan)
             self._database.close()
 
     def done(self) -> set[str]:
@@ -90,26 +91,38 @@ def _in_one_line(folder: Path) -> Iterator[None]:
 _AT_ONCE = 5000  # rows in memory
 
 
-def tables(rows: Iterable[Row], plan: Plan) -> Iterator[pa.Table]:
+def numbers(plan: Plan) -> dict[str, int]:
+    """The number of each run, by its id."""
+    return {run.id: number for number, run in enumerate(plan)}
+
+
+def tables(rows: Iterable[Row], plan: Plan, number_of: Mapping[str, int]) -> Iterator[pa.Table]:
     """The plan's rows, some thousand at a time; the first table is empty."""
-    schema = pa.schema(
-        [(name, pa.type_for_alias(kind)) for name, kind in columns(plan.study).items()]
-    )
-    yield schema.empty_table()
-    number_of = {run.id: number for number, run in enumerate(plan)}
+    yield pa.schema([(name, pa.string()) for name in ("run", "outcome", "reason")]).empty_table()
     wanted = (row for row in rows if row["run"] in number_of)
     while some := list(islice(wanted, _AT_ONCE)):
         # A row that was done for another plan may lack some of this one's axes.
         whole = [{**plan.parameters(number_of[row["run"]]), **row} for row in some]
-        yield pa.Table.from_pylist(whole, schema)
+        names = dict.fromkeys(name for row in whole for name in row)
+        yield pa.table({name: pa.array([row.get(name) for row in whole]) for name in names})
 
 
-def write_table(path: Path, rows: Iterable[Row], plan: Plan) -> None:
+def joined(parts: Iterable[pa.Table]) -> pa.Table:
+    """Tables below each other, with the columns of all; what is nowhere known would be numbers."""
+    found = pa.concat_tables(parts, promote_options="permissive")
+    known = (x.with_type(pa.float64()) if pa.types.is_null(x.type) else x for x in found.schema)
+    return found.cast(pa.schema(known))
+
+
+def write_table(path: Path, rows: Callable[[], Iterable[Row]], plan: Plan) -> None:
     """Write the plan's rows as a Parquet file, whole or not at all."""
-    found = tables(rows, plan)
+    number_of = numbers(plan)
+    # The columns of all are known before the first is written.
+    some = tables(rows(), plan, number_of)
+    empty = joined(table.schema.empty_table() for table in some)
     with (
         whole_file(path) as unfinished,
-        pq.ParquetWriter(unfinished, next(found).schema, compression="zstd") as writer,
+        pq.ParquetWriter(unfinished, empty.schema, compression="zstd") as writer,
     ):
-        for table in found:
-            writer.write_table(table)
+        for table in tables(rows(), plan, number_of):
+            writer.write_table(joined([empty, table]))

@@ -12,7 +12,7 @@ from compare.simulate.workers import Workers
 from compare.study.grid.plan import PlannedRun
 from compare.study.grid.study import Study
 from compare.study.work.execute import Crew, Task
-from compare.study.work.perform import Outcome, Result, perform, perform_alone, perform_together
+from compare.study.work.perform import Outcome, Result, perform_all, perform_alone
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -30,7 +30,7 @@ def local_crew(workers: int) -> Crew:
         # The run itself asks the time between stations; a stuck one is ended with its worker.
         return pool.submit(task, study, runs, timeout=1.1 * study.timeout + 1)
 
-    return Crew(submit, perform, 2 * workers + 1, _local_ending, pool.end, perform_together)
+    return Crew(submit, perform_all, 2 * workers + 1, _local_ending, pool.end)
 
 
 def _local_ending(error: BaseException, study: Study) -> tuple[Outcome, str]:
@@ -73,15 +73,8 @@ def dask_crew(address: str) -> Crew:
     def end() -> None:
         executor.shutdown(wait=False)
 
-    alone = max(threads.values()) == 1
-    return Crew(
-        executor.submit,
-        perform_alone if alone else perform,
-        4 * sum(threads.values()),
-        ending,
-        end,
-        perform_together if alone else None,
-    )
+    task = perform_alone if max(threads.values()) == 1 else perform_all
+    return Crew(executor.submit, task, 4 * sum(threads.values()), ending, end)
 
 
 def _gone(address: str) -> InputError:

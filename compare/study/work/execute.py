@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
-from functools import partial
 from itertools import islice
 from typing import TypeAlias
 
@@ -12,7 +11,6 @@ from compare.study.grid.plan import PlannedRun
 from compare.study.grid.study import Study
 from compare.study.work.perform import Outcome, Result, lost
 
-Perform: TypeAlias = Callable[[Study, PlannedRun], Result]
 Task: TypeAlias = Callable[[Study, tuple[PlannedRun, ...]], list[Result]]
 _BATCH = 32  # runs in closed form: a tenth of a second of work, and done singly if they fail
 
@@ -22,35 +20,24 @@ class Crew:
     """Who does the runs."""
 
     submit: Callable[[Task, Study, tuple[PlannedRun, ...]], Future[list[Result]]]
-    perform: Perform  # what a worker does with a run
+    task: Task  # what a worker does with some runs
     ahead: int  # how many tasks are handed out at once; memory is that of so many
     # Outcome and reason of an exception that is not the run's own; or it raises.
     ending: Callable[[BaseException, Study], tuple[Outcome, str]]
     end: Callable[[], None]
-    # What a worker does with some runs in closed form at once; one by one if not given.
-    together: Task | None = None
 
 
 def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator[Result]:
     """Do runs. One that costs its worker is tried once more, alone."""
-    together = None if study.beams else crew.together
+    batch = 1 if study.beams else _BATCH
     fresh, again = iter(runs), deque[PlannedRun]()
     suspects: set[str] = set()
     under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]] = {}
 
-    alone = partial(_one_by_one, crew.perform)
-
     def start() -> bool:
-        task: Task = alone
-        some: tuple[PlannedRun, ...]
-        if again:
-            some = (again.popleft(),)
-        elif together is None:
-            some = tuple(islice(fresh, 1))
-        else:
-            task, some = together, tuple(islice(fresh, _BATCH))
+        some = (again.popleft(),) if again else tuple(islice(fresh, batch))
         if some:
-            under_way[crew.submit(task, study, some)] = some
+            under_way[crew.submit(crew.task, study, some)] = some
         return bool(some)
 
     try:
@@ -78,7 +65,3 @@ def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator
         for future in under_way:
             future.cancel()
         crew.end()
-
-
-def _one_by_one(perform: Perform, study: Study, runs: tuple[PlannedRun, ...]) -> list[Result]:
-    return [perform(study, run) for run in runs]

@@ -1,62 +1,16 @@
 """What a study records of a run: plain numbers, by name."""
 
-from collections.abc import Iterable, Mapping
-
 import numpy as np
 
-from analytic import CLAMP_READINGS, Direction, Events, Readings, find_events
+from analytic import Direction, Events, Readings, find_events
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT
-from compare.align.frames import COMPONENTS
 from compare.measure.contacts import contacts_by
 from compare.read.tables import Physics
-from compare.sense.transitions import TRANSITIONS
-from compare.study.grid.study import Record
 
 _EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "back_start", "back_end", "snap_off")
 _EVENTS_IN_SPACE = {"touch": "touch", "slip_off": "slip-off", "release": "release"}
-_RECONSTRUCTION = dict.fromkeys(
-    ("reconstruction_rms", "reconstruction_max", "reconstruction_share"), "double"
-)
-
-
-def _disagreement(readings: Iterable[str], places: Iterable[str]) -> dict[str, str]:
-    """Columns of `Judged.metrics`."""
-    return {
-        **{f"disagreement_{name}_{kind}": "double" for name in readings for kind in ("rms", "max")},
-        "agrees": "bool",
-        "phase_agreement": "double",
-        "stations_compared": "int64",
-        **{
-            f"{place}_{part}": "double"
-            for place in places
-            for part in ("reference", "candidate", "difference")
-        },
-    }
-
-
-COLUMNS: Mapping[Record, Mapping[str, str]] = {
-    "events": {
-        "phase_b_exists": "bool",
-        "contact_length_minimum": "double",
-        **{f"event_{name}": "double" for name in _EVENTS},
-    },
-    "disagreement": _disagreement(
-        CLAMP_READINGS, (*(f"transition_{name}" for name in TRANSITIONS), "snap_off")
-    ),
-    "reconstruction": _RECONSTRUCTION,
-}
-"""Columns of a row by what is recorded, with their Arrow types."""
-COLUMNS_IN_SPACE: Mapping[Record, Mapping[str, str]] = {
-    "events": {
-        **{f"event_{name}": "double" for name in _EVENTS_IN_SPACE},
-        "hops": "int64",
-        "stations_touching": "int64",
-    },
-    "disagreement": _disagreement(COMPONENTS, _EVENTS_IN_SPACE) | {"contact_rms": "double"},
-    "reconstruction": _RECONSTRUCTION,
-}
-"""The same in space."""
+_RECONSTRUCTION = ("reconstruction_rms", "reconstruction_max", "reconstruction_share")
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:

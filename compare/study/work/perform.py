@@ -24,24 +24,15 @@ from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
 from compare.study.grid.study import PlanarRun, SpatialRun, Study, run_of
 from compare.study.work import metrics
-from compare.study.work.together import Known, known_of
+from compare.study.work.together import NOTHING, Known, known_of
 from mujoco_models import DivergedError
 
 Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
 Row: TypeAlias = dict[str, Any]
 
 _VERSIONS = ("vibrissa-testbed", "mujoco", "numpy", "scipy")
-_ABOUT = {
-    "seconds": "double",
-    "seconds_candidate": "double",
-    **{f"version_{name.replace('-', '_')}": "string" for name in _VERSIONS},
-    "version_python": "string",
-    "system": "string",
-    "host": "string",
-}
 # Of the stations; in motion the first contact and the last bounce, whatever the settings.
 _BOUNCES = 0.1
-_IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
 
 
 @dataclass(frozen=True)
@@ -56,40 +47,27 @@ class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
     """The run has used up its time."""
 
 
-def columns(study: Study) -> dict[str, str]:
-    """List the columns of a study's rows."""
-    types = {bool: "bool", int: "int64", float: "double", str: "string"}
-    found = dict(_IDENTITY)
-    for axis in study.crossed:
-        for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):
-            kinds = {types[type(value)] for value in values}
-            found[key] = kinds.pop() if len(kinds) == 1 else "double"
-    for record in study.record:
-        found |= (metrics.COLUMNS_IN_SPACE if study.in_space else metrics.COLUMNS)[record]
-    return found | {"seed": "int64"} | _ABOUT
+def perform_all(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
+    """Do runs, what is known of all of them at once."""
+    begin = time.perf_counter()
+    known = known_of(study, [run.parameters for run in runs])
+    share = (time.perf_counter() - begin) / len(runs)
+    return [perform(study, run, one, share) for run, one in zip(runs, known, strict=True)]
 
 
-def perform(study: Study, run: PlannedRun) -> Result:
-    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
-    return _performed(study, run, Known())
+def perform_alone(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
+    """Do runs in a process that does nothing else: one that hangs ends the process.
 
-
-def perform_together(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
-    """Do runs in closed form, what they have in common at once.
-
-    A process that does nothing else is asked for: one that hangs is ended, and all of its runs are
-    to be done one by one, by `perform_alone`.
+    `perform` asks the time between stations, which ends a slow run but not a stuck one.
     """
     with _end_of_process(1.1 * study.timeout + 1):
-        begin = time.perf_counter()
-        known = known_of(study, [run.parameters for run in runs])
-        share = (time.perf_counter() - begin) / len(runs)
-        return [_performed(study, run, one, share) for run, one in zip(runs, known, strict=True)]
+        return perform_all(study, runs)
 
 
-def _performed(study: Study, run: PlannedRun, known: Known, spent: float = 0.0) -> Result:
+def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float = 0.0) -> Result:
+    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
     begin = time.perf_counter() - spent
-    row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
+    row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters}
     readings: dict[str, Readings | SpatialReadings] = {}
     try:
         row |= _measure(study, run.parameters, readings, known)
@@ -101,17 +79,8 @@ def _performed(study: Study, run: PlannedRun, known: Known, spent: float = 0.0) 
         row |= {"outcome": "diverged", "reason": str(error)}
     except Exception as error:
         row |= {"outcome": "failed", "reason": _one_line(error)}
-    row["seconds"] = time.perf_counter() - begin
+    row |= {"seconds": time.perf_counter() - begin, **_system()}
     return Result(row, readings if study.keep_readings else {})
-
-
-def perform_alone(study: Study, run: PlannedRun) -> Result:
-    """Do one run in a process that does nothing else: a run that hangs ends the process.
-
-    `perform` asks the time between stations, which ends a slow run but not a stuck one.
-    """
-    with _end_of_process(1.1 * study.timeout + 1):
-        return perform(study, run)
 
 
 def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:

@@ -1,13 +1,17 @@
 """What is computed of many runs in closed form at once, before each of them is done."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 
 from analytic import Beam, Contour, Events, Readings, find_many_events, solve_sweeps
 from analytic.problem.support import is_plain
 from compare.study.grid.axes import Value
 from compare.study.grid.study import PlanarRun, Study, run_of
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -19,59 +23,51 @@ class Known:
     reference: Readings | None = None  # the closed form's sweep
 
 
+NOTHING = Known()
+
+
 def known_of(study: Study, parameters: Sequence[dict[str, Value]]) -> list[Known]:
-    """Read the cases of runs, and find the events of all and solve the sweeps of all at once."""
-    if study.in_space:
-        return [Known() for _ in parameters]
-    known = [_read(study, one) for one in parameters]
-    if "events" in study.record:
-        known = _with_events(known)
+    """Read the cases of runs, and find the events of all and solve the sweeps of all at once.
+
+    Of runs in closed form, that is: beside a simulation it takes no time.
+    """
+    if study.in_space or study.beams or len(parameters) == 1:
+        return [NOTHING] * len(parameters)
+    given = {i: {**study.base, **one} for i, one in enumerate(parameters)}
+    runs = _where_possible(_read, given)
+    events: dict[int, Events] = {}
+    swept: dict[int, Readings] = {}
+    if "events" in study.record and (plain := _where_possible(_plain, runs)):
+        with suppress(Exception):
+            profiles, beams = zip(*plain.values(), strict=True)
+            events = dict(zip(plain, find_many_events(profiles, beams), strict=True))
     if not study.events_only:
-        known = _with_sweeps(known)
-    return known
+        cases = _where_possible(lambda run: run.case(Path(), "run"), runs)
+        solved = zip(cases, solve_sweeps(cases.values()), strict=True)
+        swept = {i: found for i, found in solved if isinstance(found, Readings)}
+    return [Known(runs.get(i), events.get(i), swept.get(i)) for i in given]
 
 
-def _read(study: Study, parameters: dict[str, Value]) -> Known:
-    try:
-        run = run_of({**study.base, **parameters})
-        return Known(run if isinstance(run, PlanarRun) else None)
-    except Exception:  # the run will say
-        return Known()
+def _where_possible(function: Callable[[Any], T | None], given: Mapping[int, Any]) -> dict[int, T]:
+    """What a function makes of each; where it fails, the run will say."""
+    made: dict[int, T] = {}
+    for i, one in given.items():
+        with suppress(Exception):
+            if (found := function(one)) is not None:
+                made[i] = found
+    return made
 
 
-def _with_events(known: list[Known]) -> list[Known]:
-    which: list[int] = []
-    profiles: list[Contour] = []
-    beams: list[Beam] = []
-    for i, one in enumerate(known):
-        if one.run is None or one.run.whisk is not None:
-            continue
-        try:
-            beam, profile, held = one.run.physics(Path())
-            if is_plain(beam, held):
-                mirrored = one.run.sweep.direction == "right"
-                profiles.append(profile.mirrored() if mirrored else profile)
-                beams.append(beam)
-                which.append(i)
-        except Exception:  # the run will say
-            continue
-    try:
-        found_of = dict(zip(which, find_many_events(profiles, beams), strict=True))
-    except Exception:  # the run that has none will say
-        return known
-    return [replace(one, events=found_of.get(i)) for i, one in enumerate(known)]
+def _read(parameters: Mapping[str, Value]) -> PlanarRun | None:
+    run = run_of(parameters)
+    return run if isinstance(run, PlanarRun) else None
 
 
-def _with_sweeps(known: list[Known]) -> list[Known]:
-    cases = {}
-    for i, one in enumerate(known):
-        if one.run is not None:
-            try:
-                cases[i] = one.run.case(Path(), "run")
-            except Exception:  # the run will say
-                continue
-    solved = dict(zip(cases, solve_sweeps(cases.values()), strict=True))
-    return [
-        replace(one, reference=found) if isinstance(found := solved.get(i), Readings) else one
-        for i, one in enumerate(known)
-    ]
+def _plain(run: PlanarRun) -> tuple[Contour, Beam] | None:
+    """Contour and vibrissa of a sweep to the left that many are found of at once."""
+    if run.whisk is not None:
+        return None
+    beam, profile, held = run.physics(Path())
+    if not is_plain(beam, held):
+        return None
+    return (profile.mirrored() if run.sweep.direction == "right" else profile), beam

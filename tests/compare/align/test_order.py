@@ -82,3 +82,8 @@ def test_what_each_kind_of_disorder_is_put_right_to():
         assert [name for name, is_so in seen.items() if is_so] == [kind] * (kind != "none")
         assert not order.opposite
         assert (record.retreats > 0) == (kind == "sorted")
+        if said := {"reversed": "rows reversed", "sorted": "out of order"}.get(kind):
+            found = compare(exact, replace(exact, table=rows.reset_index(drop=True)))
+            assert [line.split(":")[0] for line in found.failures] == ["order"]
+            assert said in found.failures[0] and said in found.likely
+            assert found.disagreement["force_x"].rms == found.snap_off.difference == 0

@@ -32,7 +32,7 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
         "--fit", "clamp_stiffness, flexural_rigidity", "--noise", "0.01", "--out", "found",
         cwd=tmp_path,
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    done.ended(0)
     rows = [line.split() for line in done.stdout.splitlines()]
     (stiffness,) = (row for row in rows if row[:1] == ["clamp_stiffness"])
     assert stiffness[1] == "8"
@@ -49,8 +49,7 @@ def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
         "calibrate", folder / "rig.csv", folder / "rubs.toml", "--fit", "clamp_stiffness",
         "--noise", "0.001", cwd=tmp_path,
     )  # fmt: skip
-    assert done.returncode == 1
-    assert "something else is not as the case says" in done.stdout
+    done.ended(1, "something else is not as the case says")
     assert (tmp_path / "results").exists()
 
 
@@ -59,8 +58,7 @@ def test_several_files_are_passes(folder, tmp_path):
     given = ("--noise", "0.01", "--fit", "clamp_stiffness", "--out", "found")
     both = (folder / "swept.parquet", folder / "rig.csv")
     done = vibrissa("calibrate", *both, folder / "object.toml", *given, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "2 passes say the same" in done.stdout
+    done.ended(0, "2 passes say the same")
     written = json.loads((tmp_path / "found" / "calibration.json").read_text())
     assert written["passes"]["degrees"] == 1
     done = vibrissa("reconstruct", *both, "--out", "points", cwd=tmp_path)

@@ -14,8 +14,8 @@ from analytic import Readings
 from compare.commands.output import Ended, ended_by_signals
 from compare.study.keep.reading import read_rows
 from compare.study.keep.store import PLAN_FILE, TABLE_FILE
-
-COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
+from tests.compare.processes import children, wait, wait_for_end
+from tests.compare.study.studies import COMMAND
 
 # Says of every station that it is done, so that a test knows when to end the sweep.
 ANNOUNCED = """
@@ -46,18 +46,6 @@ for command in " ".join(sys.argv[1:]).split(" then "):
         raise AssertionError(command)
 """
 PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-
-
-def alive(process):
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
-
-
-def children(process):
-    tasks = Path(f"/proc/{process}/task").glob("*/children")
-    return [int(child) for file in tasks for child in file.read_text().split()]
 
 
 def stored(folder):
@@ -97,18 +85,13 @@ def test_a_sweep_that_is_ended_keeps_its_stations(tmp_path, way, said):
 def test_a_budget_that_is_ended_leaves_no_process_and_nothing_unfinished(tmp_path, way):
     words = ["run", "catenary", "--budget", "--stations", "20000", "--out", "out"]
     with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
-        end = time.monotonic() + 120
-        while not (workers := children(process.pid)):
-            assert time.monotonic() < end
-            time.sleep(0.1)
+        wait(lambda: children(process.pid))
+        workers = children(process.pid)
         time.sleep(2)  # at work, or just about to start
-        workers = {*workers, *children(process.pid)}
+        workers += children(process.pid)
         process.send_signal(way)
-        begin = time.monotonic()
         _, error = process.communicate(timeout=60)
-    while any(map(alive, workers)):
-        assert time.monotonic() < begin + 60
-        time.sleep(0.1)
+    wait_for_end(workers)
     if way != signal.SIGKILL:
         assert process.returncode == 2
         assert len(error.splitlines()) == 1, error
@@ -125,10 +108,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
     )
     words = ["study", "grid.toml", "--out", "out", "--workers", "1"]
     with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
-        end = time.monotonic() + 120
-        while stored(tmp_path / "out") < 5:
-            assert time.monotonic() < end
-            time.sleep(0.05)
+        wait(lambda: stored(tmp_path / "out") >= 5)
         workers = children(process.pid)
         process.send_signal(way)
         _, error = process.communicate(timeout=60)
@@ -136,10 +116,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
     assert len(error.splitlines()) == 1, error
     assert list(tmp_path.rglob(".*")) == []
     assert len(pd.read_parquet(tmp_path / "out" / TABLE_FILE)) >= 5
-    end = time.monotonic() + 60
-    while any(map(alive, workers)):
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    wait_for_end(workers)
 
 
 def test_nohup_is_respected(tmp_path):
@@ -154,54 +131,45 @@ def test_nohup_is_respected(tmp_path):
         signal.signal(signal.SIGHUP, before)
 
 
+EXACT = "run parabola --engine exact --stations 30 --out"
+COMPARED = "compare ä/analytic.parquet ä/analytic.parquet --out ü"
+ALL = f"0 {EXACT} ä then 0 {COMPARED} then 2 reconstruct größe.csv"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "strange",
+    ("strange", "commands", "said"),
     [
-        {
-            "MPLBACKEND": "nonsense",
-            "HOME": "/nowhere",
-            "MPLCONFIGDIR": "/nowhere",
-            "COLUMNS": "10",
-            "TERM": "dumb",
-        },
-        {"PYTHONIOENCODING": "ascii"},
-        {"LC_ALL": "C"},
+        (
+            {
+                "MPLBACKEND": "nonsense",
+                "HOME": "/nowhere",
+                "MPLCONFIGDIR": "/nowhere",
+                "COLUMNS": "10",
+                "TERM": "dumb",
+            },
+            ALL,
+            "",
+        ),
+        ({"PYTHONIOENCODING": "ascii"}, ALL, ""),
+        ({"LC_ALL": "C"}, ALL, ""),
+        # Python cannot even say what file is meant; one line says what to do.
+        (
+            {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+            f"0 list cases then 0 {EXACT} out then 2 {EXACT} ä",
+            "LC_ALL",
+        ),
     ],
-    ids=" ".join,
 )
-def test_strange_environments(tmp_path, strange):
+def test_strange_environments(tmp_path, strange, commands, said):
     """Same files, same exit code; what the encoding lacks is written as an escape."""
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))}
     (tmp_path / "größe.csv").write_text("ü,é\n1,2\n", encoding="utf-8")
-    commands = (
-        "0 run parabola --engine exact --stations 30 --out ä"
-        " then 0 compare ä/analytic.parquet ä/analytic.parquet --out ü"
-        " then 2 reconstruct größe.csv"
-    )
     done = subprocess.run(
         [sys.executable, "-c", IN_TURN, *commands.split()],
         cwd=tmp_path, env={**environment, **strange}, capture_output=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stderr.count(b"\n") == 1, done.stderr  # of the last one
-    assert (tmp_path / "ü" / "report.html").exists()
-
-
-@pytest.mark.slow
-def test_an_encoding_without_the_letters_of_a_name(tmp_path):
-    """Python cannot even say what file is meant; one line says what to do."""
-    strange = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    environment = {**os.environ, **strange}
-    exact = ("--engine", "exact", "--stations", "30")
-    for words, code in (
-        (["list", "cases"], 0),
-        (["run", "parabola", *exact, "--out", "out"], 0),
-        (["run", "parabola", *exact, "--out", "ä"], 2),
-    ):
-        done = subprocess.run(
-            [*COMMAND, *words], cwd=tmp_path, env=environment, capture_output=True, check=False
-        )
-        assert done.returncode == code, done.stderr
-        assert done.stderr.count(b"\n") == (code == 2), done.stderr
-    assert b"LC_ALL" in done.stderr
+    assert said.encode() in done.stderr
+    assert (tmp_path / "ü" / "report.html").exists() == (commands == ALL)

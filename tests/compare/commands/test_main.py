@@ -2,21 +2,17 @@
 
 import io
 import json
-from dataclasses import replace
 
-import pandas as pd
 import pytest
 
-from analytic import Readings
 from tests.compare.command import vibrissa
-from tests.compare.commands.case_files import CASE, UNITS
+from tests.compare.commands.case_files import CASE
 
 
 @pytest.mark.slow
 def test_run_writes_what_it_promises(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
-    done = vibrissa("run", "case.toml", "--film", "--out", "out", "--segments", 40, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    vibrissa("run", "case.toml", "--film", "--out", "out", "--segments", 40, cwd=tmp_path).ended(0)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "analytic.parquet",
         "mujoco-chain.parquet",
@@ -32,8 +28,7 @@ def test_run_writes_what_it_promises(tmp_path):
     assert found["verdict"] == "agrees"
     report = (tmp_path / "out" / "report.html").read_text()
     assert "<b>mujoco chain agrees with analytic.</b>" in report
-    again = vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path)
-    assert again.returncode == 0
+    vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path).ended(0)
 
 
 @pytest.mark.slow
@@ -41,52 +36,26 @@ def test_run_writes_what_it_promises(tmp_path):
 def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     done = vibrissa("run", "case.toml", "--budget", cwd=tmp_path)
-    assert done.returncode == 1, done.stderr
-    assert "allowed" in done.stdout
-    assert "The largest part is discretisation" in done.stdout
+    done.ended(1, "allowed", "The largest part is discretisation")
     written = tmp_path / "results" / "small object"
     found = json.loads((written / "budget.json").read_text())
     assert found["blame"] == "discretisation"
     assert list(found["convergence"]) == ["10", "20", "40"]
     assert 'id="budget"' in (written / "report.html").read_text()
-    done = vibrissa("report", "results", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = vibrissa("report", "results", cwd=tmp_path).ended(0)
     page = (tmp_path / "results" / "report.html").read_text()
     assert '<th scope="row">small object</th><td class="text">chain</td><td>10</td>' in page
     assert vibrissa("report", "nowhere", cwd=tmp_path).returncode == 2
-
-
-def test_units(tmp_path):
-    (tmp_path / "case.toml").write_text(UNITS)
-    done = vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    from analytic import named_case, solve_sweep
-
-    sweep = Readings.read(tmp_path / "analytic.parquet")
-    assert sweep.beam.length == pytest.approx(0.05)
-    from dataclasses import replace
-
-    from analytic import Sweep
-
-    dimensionless = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=30)))
-    ratio = sweep.values("force_y").max() / dimensionless.values("force_y").max()
-    assert ratio == pytest.approx(2e-6 / 0.05**2, rel=1e-9)
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         (("length = 1.0", "length = -1.0"), "beam.length = -1.0"),
-        (("length = 1.0", 'length = "1 parsnip"'), "'1 parsnip'"),
-        (("length = 1.0", 'length = "1 kg"'), "'1 kg'"),
-        (("length = 1.0", 'length = "1 m"'), "without a unit"),
         (("length = 1.0", "lenght = 1.0"), "did you mean length?"),
         (("radius = 1.0", "radius = 1.0\na = 3"), "profile.a"),
-        (("radius = 1.0", ""), "profile.radius = missing"),
-        (('kind = "circle"', 'kind = "square"'), "profile.kind = 'square'"),
         (('kind = "circle"', ""), "profile.kind = missing"),
         (("segments = 10", "segments = 1"), "mujoco.segments"),
-        (("segments = 10", "segmens = 10"), "did you mean segments?"),
         (("segments = 10", 'beam = "rope"'), "mujoco.beam = 'rope'"),
         (("stations = 30", "stations = 1"), "sweep.stations = 1"),
         (("[sweep]", '[sweep]\ndirection = "up"'), "sweep.direction = 'up': must be 'left'"),
@@ -98,8 +67,7 @@ def test_units(tmp_path):
 )
 def test_bad_case_files(tmp_path, change, said):
     (tmp_path / "case.toml").write_text(CASE.replace(*change))
-    done = vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path)
-    done.refused(said)
+    vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path).refused(said)
     assert not (tmp_path / "out").exists()
 
 
@@ -114,24 +82,16 @@ def test_bad_case_files(tmp_path, change, said):
         (["compare", "a.parquet", "b.parquet"], "a.parquet"),
         (["fly"], "fly"),
         (["run"], "CASE"),
+        (["run", "parabola", "--engine", "exact", "--out", "file"], "--out = file"),
+        (["run", "catenary", "--speed", "0"], "motion.speed"),
+        (["run", "catenary", "--motion", "--spatial"], "--spatial"),
+        (["run", "catenary", "--timestep", "9"], "motion.timestep"),
     ],
 )
 def test_bad_commands(tmp_path, arguments, said):
-    done = vibrissa(*arguments, cwd=tmp_path)
-    done.refused(said)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_output_folder_that_cannot_be(tmp_path):
-    (tmp_path / "file").write_text("")
-    done = vibrissa("run", "parabola", "--engine", "exact", "--out", "file", cwd=tmp_path)
-    done.refused()
-
-
-def test_cases_are_listed(tmp_path):
-    done = vibrissa("list", "cases", cwd=tmp_path)
-    assert done.returncode == 0
-    assert "two-circles" in done.stdout
+    (tmp_path / "file").touch()
+    vibrissa(*arguments, cwd=tmp_path).refused(said)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 def test_alone_it_prints_its_help_and_is_no_success(tmp_path):
@@ -140,28 +100,6 @@ def test_alone_it_prints_its_help_and_is_no_success(tmp_path):
     assert done.stdout.count("\n") > 10
     assert "What the clamp says:" in done.stdout
     assert done.stderr == ""
-
-
-def test_points_and_counts_have_the_phases_of_a_comparison(tmp_path):
-    from analytic import CLAMP_READINGS, Sweep, named_case, solve_sweep
-    from compare import classify
-    from compare.sense.noise import with_noise
-
-    exact = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=60)))
-    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 3)
-    noisy.table.loc[30, "status"] = "unsettled"
-    noisy.write(tmp_path / "noisy.csv")
-    done = vibrissa("reconstruct", "noisy.csv", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    points = pd.read_csv(tmp_path / "out" / "points.csv")
-    judged = classify(noisy).phase
-    explained = (points["phase"] != "unexplained").to_numpy()
-    here = explained & (judged != "")
-    assert (points["phase"].to_numpy()[here] == judged[here]).all()
-    assert points["phase"][30] == "gap"
-    for phase in ("tip", "tangent"):
-        assert f"{(points['phase'] == phase).sum()} {phase}" in done.stdout
-    assert "1 not used" in done.stdout
 
 
 def test_a_terminal_shows_what_is_being_done(monkeypatch):

@@ -8,7 +8,7 @@ import pytest
 from analytic import Beam, Case, Readings, Sweep, circle, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.read.run_folder import read_run
-from tests.compare.command import vibrissa
+from tests.compare.command import reported_again, vibrissa
 from tests.compare.commands.case_files import RIG_COLUMNS, as_a_rig
 
 
@@ -31,17 +31,7 @@ def test_the_report_of_a_run_again(tmp_path):
     )
     words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
     done = vibrissa("run", *words, "--budget", "--film", cwd=tmp_path)
-    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
-    for name in ("report.html", "readings.png"):
-        (tmp_path / "out" / name).unlink()
-    again = vibrissa("report", "out", cwd=tmp_path)
-    assert (again.returncode, again.stderr) == (done.returncode, "")
-    after = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
-    assert after.keys() == before.keys()
-    page = {line for line in after.pop("report.html").splitlines() if b"report out" not in line}
-    lost = page.symmetric_difference(before.pop("report.html").splitlines())
-    assert all(b">date<" in line or b">command<" in line for line in lost), lost
-    assert after == before
+    reported_again(done, tmp_path / "out", "report.html", "readings.png")
     stored = read_run(tmp_path / "out")
     assert stored.tolerances.special["force_x.tip.max"].reason == "for the controller"
     assert stored.budget.convergence.keys() == {8, 16, 32}
@@ -53,8 +43,7 @@ def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     sweep.write(tmp_path / "analytic.parquet")
     sweep.write(tmp_path / "mujoco-rod.parquet")
     sweep.write(tmp_path / "mujoco-rod.partial.parquet")
-    done = vibrissa("report", ".", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    vibrissa("report", ".", cwd=tmp_path).ended(0)
     assert (tmp_path / "report.html").exists()
     assert read_run(tmp_path).tolerances == Tolerances()
 
@@ -79,8 +68,7 @@ def test_a_run_that_is_damaged_is_one_line(tmp_path, sweep, name, content, said)
     else:
         (tmp_path / name).write_bytes(content)
     there = set(tmp_path.iterdir())
-    done = vibrissa("report", tmp_path, cwd=tmp_path)
-    done.refused(said)
+    vibrissa("report", tmp_path, cwd=tmp_path).refused(said)
     assert set(tmp_path.iterdir()) == there
 
 

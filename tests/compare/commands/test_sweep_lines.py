@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS
-from compare.commands.sweep_lines import note_rows, print_sweep
+from analytic import CLAMP_READINGS, reconstruct
+from compare.commands.sweep_lines import note_rows, print_reconstruction, print_sweep
 from compare.sense.record import without_dropouts
 from tests.conftest import exact_sweep
 
@@ -22,7 +22,20 @@ def test_no_readings_is_said_of_none_only(known, capsys):
     print_sweep(replace(exact, table=table))
     said = capsys.readouterr().out
     assert "20 touches again (foot_x" in said
+    assert "another part of the vibrissa touches the object, or would lie in it" in said
     assert ("no readings" in said) != known
+
+
+def test_points_are_counted_by_phase(capsys):
+    exact = exact_sweep("parabola")
+    status = np.where(np.arange(200) == 90, "unsettled", "ok")
+    spoilt = replace(exact, table=exact.table.assign(status=status))
+    points = reconstruct(spoilt)
+    print_reconstruction(spoilt, points, "elastica")
+    said = capsys.readouterr().out
+    for phase in ("free", "tip", "tangent"):
+        assert f"{(points['phase'] == phase).sum()} {phase}" in said
+    assert "1 not used" in said
 
 
 def test_dropouts_are_named(capsys):

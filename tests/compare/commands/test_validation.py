@@ -54,7 +54,7 @@ def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
     for rigidity, resolved in ((2.06e-6, False), (2.3e-6, True)):
         rig(tmp_path / "rig.csv", rigidity)
         done = vibrissa("compare", "case.toml", "rig.csv", "--beam", "case.toml", cwd=tmp_path)
-        assert done.returncode == 1, done.stderr
+        done.ended(1)
         said = "the disagreement is resolved" if resolved else "the disagreement is not resolved"
         assert said in done.stdout
         assert "flexural_rigidity dominates" in done.stdout
@@ -83,8 +83,7 @@ def test_a_reference_that_is_a_file_takes_its_uncertainties_from_a_case(tmp_path
         (("mine.parquet", "--uncertainty", "case.toml", "--budget", "no.json"), "no.json"),
     ):
         reference, *options = arguments
-        done = vibrissa("compare", reference, "rig.csv", *options, cwd=tmp_path)
-        done.refused(why)
+        vibrissa("compare", reference, "rig.csv", *options, cwd=tmp_path).refused(why)
 
 
 def test_a_budget_is_the_uncertainty_of_the_numerics(tmp_path):

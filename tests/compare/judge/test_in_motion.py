@@ -54,12 +54,6 @@ def test_limits_that_were_asked_for_stay():
     assert limits.suited_to(moving(speed=1.0)).transition == limits.transition
 
 
-def test_late_is_allowed_and_early_is_not():
-    assert compare(EXACT, moving(late=0.04)).agrees
-    assert [f.name for f in compare(EXACT, moving(late=0.06)).exceeded] == ["snap_off"]
-    assert [f.name for f in compare(EXACT, moving(late=-0.04)).exceeded] == ["snap_off"]
-
-
 def test_a_users_model_is_judged_by_its_own_damping():
     """`simulate_model` measures it; what [motion] says of damping is of our models."""
     own = Tolerances().suited_to(moving(measured={"damping_ratio": 0.5}))

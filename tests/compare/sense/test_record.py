@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Readings
-from compare import compare
 from compare.sense.noise import with_noise
 from compare.sense.record import inspect_record, without_dropouts
 from tests.compare.synthetic import changed
@@ -63,18 +62,6 @@ def test_what_is_no_defect(noisy):
     )
     for sweep in (coarse, jittered, through_zero, idle):
         assert list(inspect_record(sweep).defects()) == []
-
-
-def test_the_order_of_the_rows():
-    exact = exact_sweep("parabola")
-    rows = np.random.default_rng(2).permutation(200)
-    for order, said in ((rows, "out of order"), (np.arange(200)[::-1], "rows reversed")):
-        found = compare(exact, replace(exact, table=exact.table.iloc[order].reset_index(drop=True)))
-        assert [line.split(":")[0] for line in found.failures] == ["order"]
-        assert said in found.failures[0]
-        assert said in found.likely
-        assert found.disagreement["force_x"].rms == 0  # compared in the order of the motion
-        assert found.snap_off.difference == 0
 
 
 def test_dropouts_become_gaps(noisy):

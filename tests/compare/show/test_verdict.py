@@ -49,6 +49,8 @@ def test_the_cause_comes_first_and_the_remark_once():
     for text in (repr(found), written_page(found)):
         assert text.lower().index("likely: flexural") < text.index("force_x")
         assert text.count("a convention for this source") == 1
+    assert found._below().count("<br>") == len([*found.lines()]) - 1 < 24
+    assert [len(ax.lines) for ax in found.plot()] == [2, 2, 2]
 
 
 @pytest.mark.parametrize(

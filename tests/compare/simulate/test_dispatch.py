@@ -8,7 +8,7 @@ import pytest
 from analytic import InputError, Sweep, named_case
 from analytic.space import FootPath, SpatialCase, SpatialReadings, sphere
 from compare import measure_budget
-from compare.simulate import budgets, dispatch
+from compare.simulate import budgets
 from compare.simulate.dispatch import at_rest, simulate
 from mujoco_models import Motion, OwnModel, Settings, SpatialSettings, simulate_sweep
 
@@ -46,14 +46,6 @@ def test_what_no_engine_can_sweep_is_refused(arguments, said):
         simulate(*arguments)
 
 
-def test_a_users_model_goes_to_its_own_sweep(monkeypatch):
-    asked = []
-    monkeypatch.setattr(dispatch, "simulate_model", lambda *given: asked.append(given))
-    model = OwnModel("whisker.xml")
-    simulate(CASE, COARSE, Motion(speed=0.1), model)
-    assert asked[0][:4] == (CASE, model, Motion(speed=0.1), COARSE)
-
-
 def test_the_contacts_at_rest_are_as_stiff_as_in_motion():
     motion = Motion(contact_stiffness=3e4)
     assert at_rest(COARSE, motion).contact_stiffness == 3e4
@@ -62,9 +54,10 @@ def test_the_contacts_at_rest_are_as_stiff_as_in_motion():
 
 
 def test_each_kind_of_case_has_its_budget(monkeypatch):
-    parts, runs = measure_budget(SPACE, SpatialSettings(segments=6), advance := Counter())
+    swept = []
+    parts, runs = measure_budget(SPACE, SpatialSettings(segments=6), lambda: swept.append(1))
     assert parts.stations == 2
-    assert advance.times == len(runs) == 3
+    assert len(swept) == len(runs) == 3
     asked = []
     monkeypatch.setattr(budgets, "budget_at_rest", lambda *given: asked.append(given))
     monkeypatch.setattr(budgets, "budget_in_motion", lambda *given: asked.append(given))
@@ -75,10 +68,3 @@ def test_each_kind_of_case_has_its_budget(monkeypatch):
     assert asked[0][:2] == (CASE, Settings())
     assert asked[1][:4] == (CASE, motion, COARSE, None)
     assert asked[2][:4] == (CASE, motion, COARSE, model)
-
-
-class Counter:
-    times = 0
-
-    def __call__(self):
-        self.times += 1

@@ -10,6 +10,7 @@ from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.profile import profile
 from mujoco_models import inspect_model, shipped_models, simulate_model
+from tests.compare.simulate.faults import faults_in
 from tests.mujoco_models.inspect.chains import Chain
 
 WELDED = (
@@ -19,10 +20,6 @@ WELDED = (
 RAIL = '<joint name="rail" type="slide" axis="1 0 0" armature="1e5"/>'
 WEIGHT = '<inertial pos="0 0 0" mass="1e-3" diaginertia="1e-3 1e-3 1e-3"/>'
 MOTOR = '<actuator><velocity joint="rail" kv="1e7"/></actuator></mujoco>'
-
-
-def faults(inspection):
-    return {remark.subject for remark in inspection.remarks if remark.kind == "fault"}
 
 
 def fixed(path):
@@ -45,9 +42,9 @@ def test_a_soft_weld_is_no_clamp_and_its_free_body_feels_nothing(tmp_path):
     text = path.read_text().replace("<worldbody>", "<worldbody>" + WELDED[0])
     path.write_text(text.replace("</mujoco>", WELDED[1]))
     before, after = fixed(path)
-    assert faults(before) >= {"clamp", "force sensor", "torque sensor"}
+    assert faults_in(before) >= {"clamp", "force sensor", "torque sensor"}
     assert "reads nothing" in str(before.remarks)
-    assert faults(after.inspection) == {"force sensor", "torque sensor"}
+    assert faults_in(after.inspection) == {"force sensor", "torque sensor"}
     weld = after.inspection.found.hand
     assert weld.rotation < 1e-3
     assert weld.displacement < 1e-3
@@ -86,7 +83,7 @@ def test_a_driven_hinge_between_drive_and_vibrissa_has_to_be_stiff(tmp_path, sti
 )  # fmt: skip
 def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
     before, after = fixed(on_rail(tmp_path, *changes, **chain))
-    assert faults(before) == subjects
+    assert faults_in(before) == subjects
     assert after.inspection.sound, after.inspection.remarks
     assert len(after.files) == 1
 

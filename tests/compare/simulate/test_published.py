@@ -10,6 +10,7 @@ from compare.simulate.expected import expected
 from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
 from mujoco_models import available_beams, inspect_model, simulate_model
+from tests.compare.simulate.faults import faults_in
 from tests.compare.simulate.published import CABLES, CHAINS
 from tests.mujoco_models.export.plain import worst_rms
 
@@ -42,10 +43,6 @@ _STEPS = 400  # in T1, of those whose own are far shorter
 _STABLE = 0.4  # of the longest step of a plugin
 
 
-def faults(inspection):
-    return {remark.subject for remark in inspection.remarks if remark.kind == "fault"}
-
-
 def fixed(name, folder):
     path = folder / "published.xml"
     path.write_text(MODELS[name]().text)
@@ -70,8 +67,8 @@ def swept(found, file):
 def test_published_models_have_their_faults_and_no_others(name, tmp_path):
     subjects, left, _ = FOUND[name]
     before, after = fixed(name, tmp_path)
-    assert faults(before) == subjects
-    assert faults(after.inspection) == left
+    assert faults_in(before) == subjects
+    assert faults_in(after.inspection) == left
 
 
 @pytest.mark.slow

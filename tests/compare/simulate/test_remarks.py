@@ -1,72 +1,108 @@
 """Planted mistakes are named, and sound models are called sound."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
 
 from analytic import Beam
+from compare.simulate.fixing import fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import clamp_stiffness
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
+from tests.compare.simulate.faults import WIRE, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain
+from tests.mujoco_models.inspect.rods import Rod
 
 STATED = Beam()
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
 FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
 
 
-def faults(tmp_path, chain, stated=STATED):
-    found = Inspection(inspect_model(chain.write(tmp_path)), stated)
-    return [str(remark) for remark in found.remarks if remark.kind == "fault"]
+def faults(tmp_path, model, stated=None):
+    found = Inspection(inspect_model(model.write(tmp_path)), stated)
+    assert [*found.lines()]
+    return [str(fault) for fault in found.faults]
+
+
+def of_rods(*values):
+    return pytest.param(*values, marks=[rods, pytest.mark.slow])
 
 
 @pytest.mark.parametrize(
-    "sound",
+    ("sound", "stated"),
     [
-        Chain(),
-        Chain(links=10),
-        pytest.param(Chain(links=60), marks=pytest.mark.slow),
-        Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'),
-        Chain(site='euler="0 0 1.5707963267948966"'),
-        Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}),  # a straight taper
+        (Chain(), STATED),
+        (Chain(links=10), STATED),
+        pytest.param(Chain(links=60), STATED, marks=pytest.mark.slow),
+        (Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'), STATED),
+        (Chain(site='euler="0 0 1.5707963267948966"'), STATED),
+        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), None),  # a straight taper
+        pytest.param(Rod(edges=12), WIRE, marks=rods),
+        of_rods(Rod(), WIRE),
+        of_rods(Rod(10, dof=""), WIRE),
+        of_rods(Rod(10, site='euler="0 0 90"'), WIRE),
     ],
 )
-def test_sound_models_are_called_sound(tmp_path, sound):
-    tapers = bool(sound.stiffer)
-    assert faults(tmp_path, sound, None if tapers else STATED) == []
+def test_sound_models_are_called_sound(tmp_path, sound, stated):
+    assert faults(tmp_path, sound, stated) == []
+
+
+MISTAKES = [
+    ({"rigidity": 1.05}, "EI: 1.05, which is 5.0% more than stated"),
+    ({"rigidity": 0.95}, "EI: 0.95, which is 5.0% less than stated"),
+    ({"length": 1.02, "rigidity": 1.0}, "length: 1.02, which is 2.0% more than stated"),
+    ({"stiffer": {7: 1.2}}, "uniformity: the joint of 'whisker7'"),
+    ({"stiffer": {4: 0.8}}, "is 20% too soft beside its neighbours"),
+    ({"first": "end"}, "the first link is rigid over a whole cell"),
+    ({"first": "start"}, "the hinge at the clamp should stand for half a cell"),
+    ({"site": 'euler="0 0 0.05"'}, "'F' is turned by 2.9 degrees"),
+    ({"site": 'euler="0.05 0 0"'}, "'T' is turned by 2.9 degrees"),
+    ({"site": 'pos="0 -0.05 0"'}, "torque sensor: 'T' is 0.05 L away"),
+    ({"gravity": "0.5 0 0"}, "gravity: 0.5 bends the vibrissa"),
+    ({"tip": 'contype="2" conaffinity="2"'}, "1 of"),
+    ({"tip": 'contype="0" conaffinity="0"'}, "meet no object"),
+    ({"tip": 'solref="0.5 1"'}, "contact: solref of 0.5"),
+    ({"curvature": 0.1}, "natural curvature: 0.1/L instead of 0/L"),
+    ({"sensors": '<force name="F" site="clamp"/>'}, "torque sensor: none"),
+    ({"sensors": '<torque name="T" site="clamp"/>'}, "force sensor: none"),
+    ({"length": 1000.0, "radius": 5.0}, "units: the length is 1000, 1000 times"),
+    ({"tip": 'margin="0.02"'}, "contact: a margin of 0.02 pushes before anything touches"),
+    ({"sensors": FORCE.format('cutoff="1"')}, "force sensor: 'F' is cut off at 1"),
+]
+ROD_MISTAKES = [
+        (Rod(rigidity=1.05 * 6.44e-4), "EI: 0.000676203, which is 5.0% more than stated"),
+        (Rod(rigidity=0.95 * 6.44e-4), "EI: 0.000611803, which is 5.0% less than stated"),
+        (Rod(length=0.102), "length: 0.102, which is 2.0% more than stated"),
+        (Rod(radius=5e-4), "radius: 0.0005 instead of 0.00025"),
+        (Rod(ahead=0.0), "clamp: bends like EI 16.7% higher"),
+        (Rod(edge='<edge equality="true"/>'), "edges: a pull of 3 EI/L^2 stretches one to more"),
+        (Rod(edge='<edge equality="true" solref="0.001 1" solimp="0.99 0.99 0.001"/>'),
+         "edges: a pull of 3 EI/L^2 stretches one by 2.1%"),
+        (Rod(own_tree=True), "sensor: 'F' reads nothing of contacts"),
+        (Rod(site='euler="0 0 3"'), "'F' is turned by 3 degrees"),
+        (Rod(contact='condim="1"'), "contact: solref of 0.02"),
+        (Rod(contact=Rod.contact + ' contype="2" conaffinity="2"'), "10 of 10 geoms"),
+        (Rod(gravity="9.81 0 0"), "gravity: 9.81 bends the vibrissa"),
+        (Rod(hand=""), "nothing can move"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "links", [12, *(pytest.param(n, marks=pytest.mark.slow) for n in (20, 40))]
-)
-@pytest.mark.parametrize(
-    ("mistake", "said"),
+    ("model", "said"),
     [
-        ({"rigidity": 1.05}, "EI: 1.05, which is 5.0% more than stated"),
-        ({"rigidity": 0.95}, "EI: 0.95, which is 5.0% less than stated"),
-        ({"length": 1.02, "rigidity": 1.0}, "length: 1.02, which is 2.0% more than stated"),
-        ({"stiffer": {7: 1.2}}, "uniformity: the joint of 'whisker7'"),
-        ({"stiffer": {4: 0.8}}, "is 20% too soft beside its neighbours"),
-        ({"first": "end"}, "the first link is rigid over a whole cell"),
-        ({"first": "start"}, "the hinge at the clamp should stand for half a cell"),
-        ({"site": 'euler="0 0 0.05"'}, "'F' is turned by 2.9 degrees"),
-        ({"site": 'euler="0.05 0 0"'}, "'T' is turned by 2.9 degrees"),
-        ({"site": 'pos="0 -0.05 0"'}, "torque sensor: 'T' is 0.05 L away"),
-        ({"gravity": "0.5 0 0"}, "gravity: 0.5 bends the vibrissa"),
-        ({"tip": 'contype="2" conaffinity="2"'}, "1 of"),
-        ({"tip": 'contype="0" conaffinity="0"'}, "meet no object"),
-        ({"tip": 'solref="0.5 1"'}, "contact: solref of 0.5"),
-        ({"curvature": 0.1}, "natural curvature: 0.1/L instead of 0/L"),
-        ({"sensors": '<force name="F" site="clamp"/>'}, "torque sensor: none"),
-        ({"sensors": '<torque name="T" site="clamp"/>'}, "force sensor: none"),
-        ({"length": 1000.0, "radius": 5.0}, "units: the length is 1000, 1000 times"),
-        ({"tip": 'margin="0.02"'}, "contact: a margin of 0.02 pushes before anything touches"),
-        ({"sensors": FORCE.format('cutoff="1"')}, "force sensor: 'F' is cut off at 1"),
+        *(
+            pytest.param(Chain(links=n, **mistake), said, marks=[] if n == 12 else pytest.mark.slow)
+            for n in (12, 20, 40)
+            for mistake, said in MISTAKES
+        ),
+        *(of_rods(replace(rod, edges=10), said) for rod, said in ROD_MISTAKES),
     ],
 )
-def test_planted_mistakes_are_named_and_nothing_else(tmp_path, mistake, said, links):
-    found = faults(tmp_path, Chain(links=links, **mistake))
+def test_planted_mistakes_are_named_and_nothing_else(tmp_path, model, said):
+    found = faults(tmp_path, model, WIRE if isinstance(model, Rod) else STATED)
     assert any(said in fault for fault in found), found
     subjects = {fault.split(":")[0].removeprefix("fault, ") for fault in found}
     # One cause may show in two ways: both sensors share a site, and the joint at the clamp is felt
@@ -76,7 +112,7 @@ def test_planted_mistakes_are_named_and_nothing_else(tmp_path, mistake, said, li
 
 def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     """MuJoCo lets no parent touch its child, but the world."""
-    found = faults(tmp_path, Chain(foot=""))
+    found = faults(tmp_path, Chain(foot=""), STATED)
     assert any("whisker-geom0 and whisker-geom1 touch" in fault for fault in found)
     assert any("nothing can move" in fault for fault in found)
 
@@ -88,12 +124,12 @@ def changed(tmp_path, chain, *changes):
         assert old in text
         text = text.replace(old, new)
     path.write_text(text)
-    return Inspection(inspect_model(path), STATED).remarks
+    return Inspection(inspect_model(path), STATED)
 
 
 def test_disabled_contacts_meet_nothing(tmp_path):
     found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
-    assert any("21 of 21 geoms" in str(remark) for remark in found)
+    assert any("21 of 21 geoms" in str(fault) for fault in found.faults)
 
 
 def test_what_is_only_seen_is_no_part_of_it(tmp_path):
@@ -102,18 +138,18 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path):
     found = changed(
         tmp_path, Chain(), ('<geom name="whisker-geom', f'{seen}<geom name="whisker-geom')
     )
-    assert [remark for remark in found if remark.kind == "fault"] == []
+    assert found.sound
 
 
 def test_a_medium_is_noted(tmp_path):
     found = changed(tmp_path, Chain(), ('integrator="', 'density="1000" integrator="'))
-    assert [remark.subject for remark in found if remark.subject == "medium"] == ["medium"]
+    assert [remark.subject for remark in found.remarks].count("medium") == 1
 
 
 @pytest.mark.skipif(not hasattr(mujoco.MjModel, "jnt_stiffnesspoly"), reason="of MuJoCo 4")
 def test_springs_that_stiffen_are_no_lack_of_links(tmp_path):
     found = changed(tmp_path, Chain(), ('stiffness="20.0"', 'stiffness="20 0 1e4"'))
-    assert any("its springs stiffen" in str(remark) for remark in found)
+    assert any("its springs stiffen" in str(fault) for fault in found.faults)
 
 
 def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
@@ -140,18 +176,15 @@ def test_the_clamps_compliance_is_measured(tmp_path, chain, stiffness):
 
 def test_the_command_prints_and_writes_it(tmp_path):
     done = vibrissa("inspect", "sound-chain", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "sound chain, in its own units: sound" in done.stdout
+    done.ended(0, "sound chain, in its own units: sound")
     assert (tmp_path / "out" / "inspection.json").is_file()
-    done = vibrissa("inspect", "mistakes", cwd=tmp_path)
-    assert done.returncode == 1
+    done = vibrissa("inspect", "mistakes", cwd=tmp_path).ended(1)
     for word in ("link8", "rigid over a whole cell", "nothing can move", "time step", "3 degrees"):
         assert word in done.stdout
     (tmp_path / "beam.toml").write_text(
         '[beam]\nlength = "100 mm"\nflexural_rigidity = "6.44e-4 N m^2"\nradius = "0.25 mm"\n'
     )
-    done = vibrissa("inspect", "sound-chain", "--beam", "beam.toml", cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
+    done = vibrissa("inspect", "sound-chain", "--beam", "beam.toml", cwd=tmp_path).ended(0)
 
 
 @pytest.mark.parametrize(
@@ -159,14 +192,13 @@ def test_the_command_prints_and_writes_it(tmp_path):
     [("nope",), ("nope.xml",), ("sound-chain", "--foot", "x"), ("sound-chain", "--geoms", "y*")],
 )
 def test_what_is_wrong_is_one_line(tmp_path, words):
-    done = vibrissa("inspect", *words, cwd=tmp_path)
-    done.refused()
+    vibrissa("inspect", *words, cwd=tmp_path).refused()
 
 
 def test_the_shipped_models_have_the_faults_that_they_say():
     """And no others: the tapered whisker and the sound chain have none."""
     found = {
-        name: {r.subject for r in Inspection(inspect_model(path)).remarks if r.kind == "fault"}
+        name: faults_in(Inspection(inspect_model(path)))
         for name, path in shipped_models().items()
         if name != "cable" and "rod" not in name
     }
@@ -185,3 +217,33 @@ def test_the_shipped_models_have_the_faults_that_they_say():
             "time step",
         },
     }
+
+
+@rods
+@pytest.mark.slow
+def test_a_soft_weld_is_a_clamp_that_turns(tmp_path):
+    """The tip gives way more by L^2 over the clamp's stiffness, and by what the weld shifts."""
+    hard, soft = (inspect_model(Rod(10, weld=weld).write(tmp_path)) for weld in (Rod.weld, ""))
+    # EI and L in natural units: the tip's compliance is 1/3, and 1/k more.
+    more = (1 / soft.tip_rigidity - 1 / hard.tip_rigidity) * 6.44e-4 / 3
+    assert 0.5 * more < 1 / clamp_stiffness(soft) < more
+    assert any("turns, by a spring" in line for line in Inspection(soft, WIRE).lines())
+
+
+@rods
+@pytest.mark.slow
+def test_what_can_leave_the_plane_has_a_note(tmp_path):
+    for dof, count in (("", 1), ('dof="2d"', 0)):
+        found = Inspection(inspect_model(Rod(10, dof=dof).write(tmp_path)), WIRE)
+        assert [remark.subject for remark in found.remarks].count("plane") == count
+
+
+@rods
+def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
+    """On the hand, and not on the free body that the rod hangs on, which feels no contacts."""
+    path = Rod(ahead=0.0).write(tmp_path)
+    before = Inspection(inspect_model(path))
+    after = fix(path, {}, before, tmp_path / "fixed.xml").inspection
+    assert faults_in(before) == {"clamp"}
+    assert after.sound, after.remarks
+    assert after.found.length == pytest.approx(0.1 * (1 - 1 / 40), rel=1e-3)

@@ -1,16 +1,14 @@
 """Worker processes: they start or it is said why not, and none outlives its leader."""
 
-import os
 import signal
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import pytest
 
 from analytic import InputError
-from compare.simulate.workers import Workers, available_cores
+from compare.simulate.workers import Workers
+from tests.compare.processes import alive, wait_for_end
 
 LEADER = """
 import os, sys, time
@@ -30,13 +28,6 @@ if __name__ == "__main__":
 """
 
 
-def alive(process):
-    try:
-        return Path(f"/proc/{process}/stat").read_text().split()[2] != "Z"
-    except FileNotFoundError:
-        return False
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("way", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_workers_end_with_their_leader_however_that_ends(tmp_path, way):
@@ -47,11 +38,8 @@ def test_workers_end_with_their_leader_however_that_ends(tmp_path, way):
         processes = [int(leader.stdout.readline()) for _ in range(2)]
         assert all(map(alive, processes))
         leader.send_signal(way)
-        begin = time.monotonic()
         assert leader.wait(timeout=60) != 0
-    while any(map(alive, processes)):
-        assert time.monotonic() < begin + 60  # each would be busy for 200 s
-        time.sleep(0.1)
+    wait_for_end(processes)  # each would be busy for 200 s
 
 
 @pytest.mark.slow
@@ -81,7 +69,3 @@ def test_a_script_without_a_guard_is_named(tmp_path):
     assert done.stderr.count("must be processes") == 1
     assert 'below `if __name__ == "__main__":`' in done.stderr.splitlines()[-1]
     assert "bootstrapping" not in done.stderr
-
-
-def test_there_is_a_core():
-    assert 1 <= available_cores() <= os.cpu_count()

@@ -1,14 +1,12 @@
 """Plans and the command line, for tests of studies."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from functools import partial
 
 import pytest
 
-from compare.commands.main import main
 from compare.study.grid.plan import Plan
+from tests.compare.command import Done, vibrissa
 from tests.compare.study.studies import planned
 
 
@@ -18,15 +16,5 @@ def plan_of(tmp_path) -> Callable[[str], Plan]:
 
 
 @pytest.fixture
-def command(tmp_path, monkeypatch, capsys) -> Callable[..., subprocess.CompletedProcess]:
-    """The command line without a new process; what it starts itself is real."""
-
-    def run(*arguments):
-        monkeypatch.chdir(tmp_path)
-        monkeypatch.setattr(sys, "argv", ["vibrissa", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(arguments, ended.value.code, said.out, said.err)
-
-    return run
+def command(tmp_path) -> Callable[..., Done]:
+    return partial(vibrissa, cwd=tmp_path)

@@ -25,6 +25,19 @@ study = { case = "catenary", keep_readings = true, timeout = 30 }
 sweep.stations = 40
 mujoco = { segments = 10, contour_points = 800 }
 """
+SIMULATED_IN_SPACE = """
+[study]
+[axes]
+mujoco.segments = [8, 16]
+path.tangent.x = [0.0, 0.1]
+[body]
+kind = "sphere"
+radius = 1
+centre = [0, 1.4, 0]
+[path]
+points = [[1.1, 0.3], [-0.3, 0.3]]
+stations = 12
+"""
 COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
 
 

@@ -3,7 +3,6 @@
 import re
 
 import numpy as np
-import pandas as pd
 import pytest
 import trimesh
 
@@ -12,8 +11,9 @@ from analytic.space import FootPath, SpatialCase, reconstruct_space, solve_space
 from compare import compare
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.work.perform import perform, perform_together
+from compare.study.work.perform import perform, perform_all
 from mujoco_models import SpatialSettings, simulate_space
+from tests.compare.study.studies import SIMULATED_IN_SPACE
 
 LEANING = """
 [study]
@@ -32,19 +32,6 @@ centre = [0, 1.4, 0]
 points = [[1.6, 0.3], [-1.6, 0.3]]
 stations = 16
 """
-SIMULATED = """
-[study]
-[axes]
-mujoco.segments = [8, 16]
-path.tangent.x = [0.0, 0.1]
-[body]
-kind = "sphere"
-radius = 1
-centre = [0, 1.4, 0]
-[path]
-points = [[1.1, 0.3], [-0.3, 0.3]]
-stations = 12
-"""
 
 
 def case_of(tangent_x, height=0.0, turn=0.0, y=1.4, points=((1.6, 0.3), (-1.6, 0.3)), n=16):
@@ -59,7 +46,7 @@ def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
     plan = plan_of(LEANING)
     assert len(plan) == 16
     recipe = plan.study.recipe
-    rows = [result.row for result in perform_together(recipe, list(plan)[4:7])]
+    rows = [result.row for result in perform_all(recipe, list(plan)[4:7])]
     for run, row in zip(list(plan)[4:7], rows, strict=True):
         at = run.parameters
         assert row["outcome"] == "done", row["reason"]
@@ -78,7 +65,7 @@ def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
 
 @pytest.mark.slow
 def test_a_row_of_mujoco_is_what_the_library_finds(plan_of):
-    plan = plan_of(SIMULATED)
+    plan = plan_of(SIMULATED_IN_SPACE)
     run = list(plan)[1]
     row = perform(plan.study.recipe, run).row
     assert row["outcome"] == "done", row["reason"]
@@ -170,27 +157,3 @@ stations = 10
     assert axis.points == ((0.068,), (0.07,))
     row = perform(study.recipe, Plan.of(study)[0]).row
     assert row["outcome"] == "done", row["reason"]
-
-
-@pytest.mark.slow
-def test_the_command_the_rows_and_the_report(tmp_path, command):
-    (tmp_path / "grid.toml").write_text(SIMULATED)
-    done = command("study", "grid.toml", "--out", "out", "--workers", "1")
-    assert done.returncode == 0, done.stdout + done.stderr
-    rows = pd.read_parquet(tmp_path / "out" / "runs.parquet")
-    assert len(rows) == 4
-    worst = rows.set_index(["mujoco.segments", "path.tangent.x"]).disagreement_moment_z_rms
-    order = np.log2(worst[8] / worst[16])
-    assert (order > 1.5).all()
-    done = command("report", "out")
-    assert done.returncode == 0, done.stdout + done.stderr
-    page = (tmp_path / "out" / "report.html").read_text()
-    assert "falls from" in page
-    assert "mujoco.segments" in page
-    orders = pd.read_csv(tmp_path / "out" / "report" / "orders.csv")
-    assert {"force_z", "moment_x"} <= set(orders["reading"])
-    assert (tmp_path / "out" / "report" / "disagreement-mujoco.segments.png").stat().st_size > 1000
-    (tmp_path / "lean.toml").write_text(LEANING)
-    done = command("study", "lean.toml", "--dry-run")
-    assert "16 runs" in done.stdout
-    assert done.stderr == ""

@@ -73,26 +73,74 @@ def test_reports_of_workers_are_gathered(pytester):
     assert len(rows_in(pytester.path / "out")) == 2
 
 
-def test_which_cases_a_test_is_run_for(pytester):
-    """All, or those of the option; the marker goes before it."""
-    pytester.makepyfile(
-        "import pytest\n"
-        "@pytest.mark.vibrissa('tip-only')\n"
-        "def test_marked(vibrissa_case): assert vibrissa_case.name == 'tip-only'\n"
-        "def test_plain(vibrissa_case): print('case', vibrissa_case.name)\n"
-    )
-    pytester.runpytest().assert_outcomes(passed=6)
-    result = pytester.runpytest("--vibrissa-case", "parabola", "-s")
-    result.assert_outcomes(passed=2)
-    result.stdout.fnmatch_lines(["*case parabola*"])
+CASES = """
+@pytest.mark.vibrissa('tip-only')
+def test_marked(vibrissa_case): assert vibrissa_case.name == 'tip-only'
+def test_plain(vibrissa_case): print('case', vibrissa_case.name)
+"""
+TWICE = """
+seen = []
+@pytest.mark.vibrissa('tip-only')
+@pytest.mark.parametrize('again', range(2))
+def test_it(vibrissa_sweep, again):
+    seen.append(vibrissa_sweep())
+    assert seen[0] is seen[-1]
+"""
+GIVEN = """
+import analytic
+exact = analytic.solve_sweep(analytic.named_case('tip-only'))
+def test_two(vibrissa_agreement): vibrissa_agreement(exact, exact)
+def test_one(vibrissa_agreement): vibrissa_agreement(exact)
+@pytest.mark.parametrize('given', [None, exact.table, 'analytic.parquet'])
+def test_no_sweep(vibrissa_agreement, given): vibrissa_agreement(given, exact)
+"""
+ENGINE = "def test_name(vibrissa_engine): print('engine', vibrissa_engine)"
+OF_ENGINE = "@pytest.mark.vibrissa_engine('{}')\n" + ENGINE
+REFUSED = """
+@pytest.mark.vibrissa('rubbing')
+@pytest.mark.vibrissa_engine('mujoco')
+def test_it(vibrissa_engine_sweep): vibrissa_engine_sweep()
+"""
 
 
-@pytest.mark.parametrize("marker", ["", "@pytest.mark.vibrissa('tip-only')"])
-def test_a_case_that_is_none_is_an_error_in_any_run(pytester, marker):
-    pytester.makepyfile(f"import pytest\n{marker}\ndef test_name(vibrissa_case): pass")
-    result = pytester.runpytest("--vibrissa-case", "tip-onli")
+@pytest.mark.parametrize(
+    ("text", "options", "outcomes", "said"),
+    [
+        # All cases, or those of the option; the marker goes before it.
+        (CASES, (), {"passed": 6}, ()),
+        (CASES, ("--vibrissa-case", "parabola", "-s"), {"passed": 2}, ("*case parabola*",)),
+        (TWICE, (), {"passed": 2}, ()),  # each sweep is made once
+        (GIVEN, ("--tb=line",), {"passed": 1, "failed": 4},
+         ("*give a reference, or let the test use `vibrissa_case`*",
+          *["*InputError: candidate = *: must be a Readings; *"] * 3)),
+        (ENGINE, ("-s", "--vibrissa-engine", "mujoco"), {"passed": 1}, ("*engine mujoco*",)),
+        (OF_ENGINE.format("mujoco"), ("--strict-markers",), {"passed": 1}, ()),
+        (OF_ENGINE.format("drakke"), (), {"errors": 1}, ("*'drakke' is none of mujoco*",)),
+        (REFUSED, ("-rs",), {"skipped": 1}, ("*engine mujoco: friction*",)),
+    ],
+)  # fmt: skip
+def test_what_a_test_is_run_for(pytester, text, options, outcomes, said):
+    pytester.makepyfile("import pytest\n" + text)
+    result = pytester.runpytest(*options)
+    result.assert_outcomes(**outcomes)
+    result.stdout.fnmatch_lines([*said])
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "said"),
+    [
+        *((f"{marker}\ndef test_name(vibrissa_case): pass", ("--vibrissa-case", "tip-onli"),
+           "--vibrissa-case: case = *did you mean tip-only?")
+          for marker in ("", "@pytest.mark.vibrissa('tip-only')")),
+        (ENGINE, ("--vibrissa-engine", "drakke"), "--vibrissa-engine: engine = 'drakke'*"),
+        ("", ("--vibrissa-space", "bell.toml"), "--vibrissa-space: *bell.toml*"),
+    ],
+)  # fmt: skip
+def test_an_option_that_names_nothing_is_an_error_in_any_run(pytester, text, options, said):
+    pytester.makepyfile("import pytest\n" + text)
+    result = pytester.runpytest(*options)
     assert result.ret == pytest.ExitCode.USAGE_ERROR
-    result.stderr.fnmatch_lines(["ERROR: --vibrissa-case: case = *did you mean tip-only?"])
+    result.stderr.fnmatch_lines([f"ERROR: {said}"])
 
 
 def test_what_the_users_own_hook_chose_is_not_chosen_again(pytester):
@@ -109,38 +157,6 @@ def test_what_the_users_own_hook_chose_is_not_chosen_again(pytester):
         "def test_it(vibrissa_case): assert vibrissa_case.name == 'tip-only'\n"
     )
     pytester.runpytest("-W", "error").assert_outcomes(passed=3)
-
-
-def test_each_sweep_is_made_once(pytester):
-    pytester.makepyfile(
-        "import pytest\n"
-        "seen = []\n"
-        "@pytest.mark.vibrissa('tip-only')\n"
-        "@pytest.mark.parametrize('again', range(2))\n"
-        "def test_it(vibrissa_sweep, again):\n"
-        "    seen.append(vibrissa_sweep())\n"
-        "    assert seen[0] is seen[-1]\n"
-    )
-    pytester.runpytest().assert_outcomes(passed=2)
-
-
-def test_two_given_sweeps_need_no_case_and_have_to_be_sweeps(pytester):
-    pytester.makepyfile(
-        "import analytic, pytest\n"
-        "exact = analytic.solve_sweep(analytic.named_case('tip-only'))\n"
-        "def test_two(vibrissa_agreement): vibrissa_agreement(exact, exact)\n"
-        "def test_one(vibrissa_agreement): vibrissa_agreement(exact)\n"
-        "@pytest.mark.parametrize('given', [None, exact.table, 'analytic.parquet'])\n"
-        "def test_no_sweep(vibrissa_agreement, given): vibrissa_agreement(given, exact)\n"
-    )
-    result = pytester.runpytest("--tb=line")
-    result.assert_outcomes(passed=1, failed=4)
-    result.stdout.fnmatch_lines(
-        [
-            "*give a reference, or let the test use `vibrissa_case`*",
-            *["*InputError: candidate = *: must be a Readings; *"] * 3,
-        ]
-    )
 
 
 @pytest.mark.parametrize("hidden", ["compare", "analytic", "mujoco_models"])
@@ -190,32 +206,3 @@ def test_a_check_runs_with_every_engine_that_is_installed(pytester):
     result.assert_outcomes(passed=len(there), skipped=len(missing))
     for one in missing:
         result.stdout.fnmatch_lines([f"*SKIPPED*engine {one.name}:*pip install*"])
-
-
-def test_which_engines_a_test_is_run_for(pytester):
-    names = "def test_name(vibrissa_engine): print('engine', vibrissa_engine)\n"
-    marked = "import pytest\n@pytest.mark.vibrissa_engine('{}')\n" + names
-    pytester.makepyfile(names)
-    result = pytester.runpytest("-s", "--vibrissa-engine", "mujoco")
-    result.assert_outcomes(passed=1)
-    result.stdout.fnmatch_lines(["*engine mujoco*"])
-    result = pytester.runpytest("--vibrissa-engine", "drakke")
-    result.stderr.fnmatch_lines(["*--vibrissa-engine: engine = 'drakke'*"])
-    pytester.makepyfile(marked.format("mujoco"))
-    pytester.runpytest("--strict-markers").assert_outcomes(passed=1)
-    pytester.makepyfile(marked.format("drakke"))
-    result = pytester.runpytest()
-    result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines(["*'drakke' is none of mujoco*"])
-
-
-def test_a_case_that_an_engine_refuses_is_skipped_with_what_it_says(pytester):
-    pytester.makepyfile(
-        "import pytest\n"
-        "@pytest.mark.vibrissa('rubbing')\n"
-        "@pytest.mark.vibrissa_engine('mujoco')\n"
-        "def test_it(vibrissa_engine_sweep): vibrissa_engine_sweep()\n"
-    )
-    result = pytester.runpytest("-rs")
-    result.assert_outcomes(skipped=1)
-    result.stdout.fnmatch_lines(["*engine mujoco: friction*"])

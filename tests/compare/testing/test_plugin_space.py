@@ -68,9 +68,6 @@ def test_cases_have_to_be_named(own_folder):
     result = own_folder.runpytest("-k", "mujoco")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(["*vibrissa_space_case: no case is chosen*"])
-    result = own_folder.runpytest("--vibrissa-space", "bell.toml")
-    assert result.ret == pytest.ExitCode.USAGE_ERROR
-    result.stderr.fnmatch_lines(["ERROR: --vibrissa-space: *bell.toml*"])
     own_folder.makepyfile(
         "import pytest\n"
         "@pytest.mark.vibrissa_space('ball.toml')\n"

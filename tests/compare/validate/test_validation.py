@@ -202,19 +202,15 @@ def test_what_cannot_be_stated(stated, why):
 
 
 @pytest.mark.parametrize(
-    "stated",
+    ("inputs", "noise", "samples", "said"),
     [
-        Uncertainties({"gain_force_x": Input(1e100)}, NO_NOISE),
-        Uncertainties({"flexural_rigidity": Input(1e12)}, NO_NOISE),
-        Uncertainties({}, {**NO_NOISE, "force_x": 1e100}),
+        ({"gain_force_x": Input(1e100)}, 0.0, 2, "check the units"),
+        ({"flexural_rigidity": Input(1e12)}, 0.0, 2, "check the units"),
+        ({}, 1e100, 2, "check the units"),
+        ({"height": Input(2.0)}, 0.0, 16, "cannot be solved"),
     ],
 )
-def test_uncertainties_in_another_unit(stated):
-    with pytest.raises(InputError, match="check the units"):
-        validated(CASES["circle"], {}, stated, samples=2)
-
-
-def test_uncertainties_beyond_any_case():
-    case = CASES["circle"]
-    with pytest.raises(InputError, match="cannot be solved"):
-        validated(case, {}, Uncertainties({"height": Input(2.0)}, NO_NOISE), samples=16)
+def test_uncertainties_in_another_unit(inputs, noise, samples, said):
+    stated = Uncertainties(inputs, {**NO_NOISE, "force_x": noise})
+    with pytest.raises(InputError, match=said):
+        validated(CASES["circle"], {}, stated, samples=samples)

@@ -37,8 +37,7 @@ def test_quick_sources_hold():
 
 @pytest.mark.slow
 def test_all_sources_hold(tmp_path):
-    done = vibrissa("verify", "--out", tmp_path / "out", cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
+    vibrissa("verify", "--out", tmp_path / "out", cwd=tmp_path).ended(0)
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"report.html", "verify.png", "verify.csv"}
     assert "Kynema" in (tmp_path / "out" / "report.html").read_text()
@@ -167,16 +166,13 @@ def test_a_solver_that_gives_up_differs(tmp_path, monkeypatch):
     (source,) = sources("sliding_sleeve")
     monkeypatch.setattr(record, "sources", lambda: [source])
     done = vibrissa("verify", cwd=tmp_path)
-    assert done.returncode == 1
-    assert "differs: Bigoni et al. 2013, past a sphere: M^2/2EI, here nan" in done.stdout
+    done.ended(1, "differs: Bigoni et al. 2013, past a sphere: M^2/2EI, here nan")
 
 
 def test_the_exit_code_says_what_differs(tmp_path, monkeypatch):
     wrong = sources("level")[0] | {"row": [{"what": "A", "value": "A", "quoted": "1.4"}]}
     monkeypatch.setattr(record, "sources", lambda: [wrong])
-    done = vibrissa("verify", cwd=tmp_path)
-    assert done.returncode == 1
-    assert "differs: Todd 1975, A: 1.4, here 1.31" in done.stdout
+    vibrissa("verify", cwd=tmp_path).ended(1, "differs: Todd 1975, A: 1.4, here 1.31")
 
 
 def test_the_surplus_of_the_measured_force_is_no_offset():

@@ -14,7 +14,7 @@ import pytest
 from analytic import InputError, named_case, solve_sweep
 from compare.study.keep.database import NAME, Database
 from compare.study.keep.reading import read_rows
-from compare.study.keep.store import TABLE_FILE, Store
+from compare.study.keep.store import TABLE_FILE, Store, write_table
 from compare.study.work.perform import Result, perform
 from tests.compare.study.studies import EVENTS_ONLY, fill
 
@@ -35,29 +35,15 @@ def stored(plan):
     return [perform(recipe, run) for run, _ in zip(plan, range(6), strict=False)]
 
 
-def test_what_is_stored_is_read(tmp_path, plan, stored, warned):
-    fill(tmp_path, plan, stored, warned)
-    rows = read_rows(tmp_path, warned.append)
-    assert set(rows["run"]) == {result.row["run"] for result in stored}
-    by_run = rows.set_index("run")
-    for result in stored:
-        assert by_run.loc[result.row["run"], "event_snap_off"] == result.row["event_snap_off"]
-    assert not warned
-
-
 def test_any_reader_of_the_folder_sees_each_run_once(tmp_path, plan, stored, warned):
+    """And only what is done is not done again."""
     fill(tmp_path, plan, [Result(stored[0].row | {"outcome": "failed"}), *stored[1:3]], warned)
+    with Store(tmp_path, plan, warned.append) as store:
+        assert store.done() == {result.row["run"] for result in stored[1:3]}
     fill(tmp_path, plan, [stored[0], *stored[2:]], warned)
     frame = pd.read_parquet(tmp_path / TABLE_FILE)
     assert len(frame) == len(stored)
     assert set(frame["outcome"]) == {"done"}
-
-
-def test_only_what_is_done_is_not_done_again(tmp_path, plan, stored, warned):
-    failed = Result(stored[0].row | {"outcome": "failed"})
-    fill(tmp_path, plan, [failed, stored[1]], warned)
-    with Store(tmp_path, plan, warned.append) as store:
-        assert store.done() == {stored[1].row["run"]}
 
 
 def test_a_row_is_there_before_its_table_is(tmp_path, plan, stored, warned):
@@ -123,6 +109,22 @@ def test_rows_come_back_as_they_were(tmp_path, warned):
     database.close()
     assert repr(found) == repr(rows)
     assert not warned
+
+
+def test_the_table_has_the_columns_of_all_rows(tmp_path, plan, monkeypatch):
+    """In whichever of its parts they first have values; and what the plan says of each run."""
+    monkeypatch.setattr("compare.study.keep.store._AT_ONCE", 2)
+    own = ({"n": 1, "unknown": None}, {"n": 2}, {"n": 2.5, "late": True})
+    rows = [
+        {"run": run.id, "outcome": "done", "reason": "", **some}
+        for run, some in zip(plan, own, strict=False)
+    ]
+    write_table(tmp_path / TABLE_FILE, lambda: rows, plan)
+    found = pd.read_parquet(tmp_path / TABLE_FILE)
+    assert found["n"].tolist() == [1.0, 2.0, 2.5]
+    assert found["late"].tolist() == [None, None, True]
+    assert found["unknown"].isna().all() and found["unknown"].dtype == float
+    assert found["beam.radius"].tolist() == [0.001, 0.002, 0.005]
 
 
 def test_a_full_disk_loses_nothing(tmp_path, plan, stored, warned, monkeypatch):

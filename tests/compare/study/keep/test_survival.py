@@ -13,6 +13,7 @@ import pytest
 
 from compare.study.keep.database import NAME
 from compare.study.keep.store import PLAN_FILE, TABLE_FILE
+from tests.compare.processes import wait
 from tests.compare.study.studies import COMMAND, EVENTS_ONLY, results, vibrissa
 
 pytestmark = pytest.mark.slow
@@ -99,8 +100,7 @@ def cluster(tmp_path_factory):
         [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
          "--scheduler-file", str(file)], **quiet,
     )  # fmt: skip
-    while not file.exists():
-        time.sleep(0.1)
+    wait(file.exists)
     workers = [
         subprocess.Popen(
             [*dask, "worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard",
@@ -137,8 +137,7 @@ def test_a_scheduler_that_goes_loses_nothing(folder, cluster, command):
     address, scheduler = cluster
     (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "500"))
     process = start(folder, "--scheduler", address)
-    while process.poll() is None and rows_there(folder / "out") < 20:
-        time.sleep(0.1)
+    wait(lambda: process.poll() is not None or rows_there(folder / "out") >= 20)
     scheduler.kill()
     _, error = process.communicate(timeout=120)
     assert process.returncode == 2, error

@@ -11,44 +11,48 @@ import pytest
 
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import Crew, carry_out
-from compare.study.work.perform import Result, perform
+from compare.study.work.perform import Result, perform_all
 from tests.compare.study.studies import EVENTS_ONLY
 
 
-def crew(perform):
-    return replace(local_crew(2), perform=perform, together=None)
+def crew(task):
+    return replace(local_crew(2), task=task)
 
 
-def in_a_thread(perform, threads=1):
+def in_a_thread(task, threads=1):
     executor = ThreadPoolExecutor(threads)
-    return Crew(executor.submit, perform, 5, pytest.fail, executor.shutdown)
+    return Crew(executor.submit, task, 5, pytest.fail, executor.shutdown)
 
 
-def quick(recipe, run):
-    return Result({"run": run.id, "outcome": "done"})
+def quick(recipe, runs):
+    return [Result({"run": run.id, "outcome": "done"}) for run in runs]
 
 
-def killed_once(recipe, run):
+def is_bad(run):
+    return run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3
+
+
+def killed_once(recipe, runs):
     """The first run that finds no mark kills its worker, as the system does when memory is out."""
     with suppress(FileExistsError):
         os.close(os.open(recipe.base["mark"], os.O_CREAT | os.O_EXCL))
         os.kill(os.getpid(), signal.SIGKILL)
-    return quick(recipe, run)
+    return quick(recipe, runs)
 
 
-def deadly(recipe, run):
-    if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
+def deadly(recipe, runs):
+    if any(map(is_bad, runs)):
         os.kill(os.getpid(), signal.SIGKILL)
-    return quick(recipe, run)
+    return quick(recipe, runs)
 
 
-def stuck(recipe, run):
+def stuck(recipe, runs):
     """Hang where no Python code is asked any more."""
-    if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
+    if any(map(is_bad, runs)):
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
         while True:
             time.sleep(1000)
-    return quick(recipe, run)
+    return quick(recipe, runs)
 
 
 @pytest.fixture
@@ -59,7 +63,7 @@ def plan(plan_of):
 def test_any_executor_gives_the_same_rows(plan):
     recipe = plan.study.recipe
     tables = []
-    for hired in (in_a_thread(perform, 3), crew(perform)):
+    for hired in (in_a_thread(perform_all, 3), crew(perform_all)):
         rows = [result.row for result in carry_out(plan, recipe, hired)]
         tables.append(sorted(({**row, "seconds": 0} for row in rows), key=lambda row: row["run"]))
     assert len(tables[0]) == len(plan)
@@ -74,7 +78,8 @@ def test_runs_are_made_as_they_are_needed(plan):
             made.append(run)
             yield run
 
-    results = carry_out(watched(), plan.study.recipe, in_a_thread(quick))
+    recipe = replace(plan.study.recipe, beams=("chain",))  # whose runs are handed out singly
+    results = carry_out(watched(), recipe, in_a_thread(quick))
     next(results)
     assert len(made) <= 6
     results.close()

@@ -36,7 +36,13 @@ def test_a_row_holds_what_the_library_finds(plan_of):
     )
     assert row["outcome"] == "done"
     assert row["disagreement_moment_z_rms"] == found.disagreement["moment_z"].rms
+    assert row["disagreement_force_x_max"] == found.disagreement["force_x"].max
     assert row["snap_off_difference"] == found.snap_off.difference
+    begins = found.transitions["phase_b_start"]
+    assert row["transition_phase_b_start_difference"] == begins.difference
+    assert row["phase_agreement"] == min(found.phase_agreement().values())
+    assert row["agrees"] == found.agrees
+    assert row["stations_compared"] == found.alignment.counts["compared"]
     assert row["event_snap_off"] == find_events(case.profile, case.beam).snap_off.foot_x
     assert row["phase_b_exists"] is True
     assert set(result.readings) == {"analytic", "candidate"}
