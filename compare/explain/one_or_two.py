@@ -77,7 +77,7 @@ def one_or_two(
     best, rival = best_alone(tried, weigh)
     if best is None or weigh.rest(best) > _LITTLE:
         pairs = list(_both(faults, tried[: len(faults)], seen - true, foot_x))
-        wired = [pair for one in wirings for pair in _wired(one, physical, true, seen)]
+        wired = list(_wired(wirings, physical, true, seen))
         two = _clearly(pairs + wired, weigh)
         less = 1.0 if best and best.sizes > 1 else _TWO_BETTER
         if two and (best is None or weigh.beyond(two) * less < weigh.beyond(best)):
@@ -199,16 +199,20 @@ def _both(
 
 
 def _wired(
-    one: Misreading, physical: list[Cause], true: Floats, seen: Floats
+    wirings: list[Misreading], physical: list[Cause], true: Floats, seen: Floats
 ) -> Iterator[Explanation]:
     """A mistake of the wiring and any fault beside it."""
-    truth = one.of(true)
-    here = [*sensor_faults(truth), *(fault.through(one.mixes) for fault in physical)]
-    fits = [_linear(fault, seen - truth) for fault in here]
-    best, fault = min(zip(fits, here, strict=True), key=lambda each: each[0].left)
-    exact = _exact(fault, best, seen - truth)
-    yield Explanation(_said(one.text, exact.text), exact.left, 2)
-    yield from (Explanation("", fit.left, 2) for fit in fits if fit is not best)
+    tried = []
+    for one in wirings:
+        truth = one.of(true)
+        here = [*sensor_faults(truth), *(fault.through(one.mixes) for fault in physical)]
+        fits = [_linear(fault, seen - truth) for fault in here]
+        best, fault = min(zip(fits, here, strict=True), key=lambda each: each[0].left)
+        yield from (Explanation("", fit.left, 2) for fit in fits if fit is not best)
+        tried.append((best, fault, one.text, seen - truth))
+    for place, (best, fault, text, error) in enumerate(sorted(tried, key=lambda x: x[0].left)):
+        exact = _exact(fault, best, error) if place < 2 * _SHORTLIST else best
+        yield Explanation(_said(text, exact.text), exact.left, 2)
 
 
 def _clearly(tried: list[Explanation], weigh: Weigh) -> Explanation | None:
