@@ -70,8 +70,12 @@ def mean_of(files: Sequence[Path], reference: AnyReadings, rig: RigFiles) -> Rep
     passes = [rig.read(file, vibrissa_of(reference)) for file in files]
     ways = {one.provenance["direction"] for one in passes}
     if len(ways) > 1 and rig.direction is None:
+        swept = 'the other way beside a case with [sweep] direction = "right"'
         raise InputError(
-            "passes", "to the left and to the right", "to one side", "--direction left"
+            "passes",
+            "to the left and to the right",
+            "to one side",
+            f"--direction left; {swept}",
         )
     chosen = [one for one in passes if rig.direction in (None, one.provenance["direction"])]
     if len(chosen) < 2:

@@ -31,7 +31,8 @@ PREFIX = "whisker_"
 PASTE = f"""\
 In a robot: <asset><model name="whisker" file="whisker.xml"/></asset> and, in what holds it,
 <attach model="whisker" body="{PREFIX}foot" prefix="left_"/>, or MjSpec's attach_body. Carriage and
-motor stay behind; the robot's own <option> needs this time step, integrator and Jacobian."""
+motor stay behind; the robot's own <option> needs this time step, integrator and Jacobian.
+The motor's ctrl is the foot's velocity, not its place."""
 _INERTIA = 1e6  # of the carriage, in masses of the vibrissa, which does nothing to it
 _GAIN = _INERTIA * MASS / 0.01  # of the motor, which has the carriage at its speed in T1/100
 _HALF_DEPTH = 0.5  # L, of the obstacle

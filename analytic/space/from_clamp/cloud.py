@@ -12,6 +12,7 @@ from analytic.problem.files import as_path, write_whole
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.readings import CONTACT_POINT, NORMAL
 
+_FARTHEST = 100.0  # of the length
 _APART = 0.25  # of the length: how far off the surface its nearest point is asked for
 
 
@@ -112,11 +113,15 @@ def misses(cloud: Cloud, body: Body, length: float) -> Misses:
     Misses
         Distances and angles.
     """
-    apart = _APART * length
     distances, angles = [], []
     for point, normal in zip(cloud.points, cloud.normals, strict=True):
+        apart = _APART * length
         spot = body.nearest(point + apart * normal, apart)
+        while spot.distance <= 0 and apart < _FARTHEST * length:  # of a point deep inside
+            apart *= 2
+            spot = body.nearest(point + apart * normal, apart)
         between = float(np.linalg.norm(spot.normal - normal))
-        distances.append(abs(float((point - spot.point) @ spot.normal)))
+        outside = spot.distance > 0
+        distances.append(abs(float((point - spot.point) @ spot.normal)) if outside else np.inf)
         angles.append(2 * np.arcsin(min(between / 2, 1.0)))
     return Misses(np.array(distances), np.array(angles))

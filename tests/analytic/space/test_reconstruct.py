@@ -18,6 +18,7 @@ from analytic.space import (
     wrench_complaint,
     write_ply,
 )
+from analytic.space.from_clamp.cloud import Cloud
 from analytic.space.from_clamp.noise import component_noise
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 from tests.analytic.noisy import noisy
@@ -128,6 +129,26 @@ def test_what_no_such_vibrissa_feels_is_named(readings, change, says):
     wrong = np.hstack(change(*clamp, readings.clamp_tangent))
     columns = dict(zip((*FORCE, *MOMENT), wrong.T, strict=True))
     assert says in wrench_complaint(reconstruct_space(changed(readings, **columns)))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.03])
+def test_the_clamp_s_action_reversed_is_hollow(share):
+    """A gentle sweep: the vibrissa could have all of these forces and moments."""
+    body = ellipsoid((0.9, 0.5, 0.7), (0.0, 1.0, 0.0))
+    path = FootPath([[1.4, 0.5], [-1.4, 0.5]], stations=80)
+    right = solve_space(SpatialCase(Beam(radius=0.002), body=body, path=path))
+    right, noise = with_noise(right, share, 1) if share else (right, None)
+    assert wrench_complaint(reconstruct_space(right, noise)) is None
+    names = [*FORCE, *MOMENT]
+    found = reconstruct_space(changed(right, **(-right.table[names])), noise)
+    assert found["contact_x"].notna().sum() > 25
+    assert "hollow surface" in wrench_complaint(found)
+
+
+def test_a_point_deep_inside_is_as_far_off_as_it_is_deep():
+    """Along its normal, whichever way that is."""
+    deep = Cloud(np.array([[0.0, 2.2 - 1.4 + 1.0, 0.0]]), np.array([[0.0, -1.0, 0.0]]))
+    assert misses(deep, BODY, 1.0).distances[0] == pytest.approx(1.0, abs=1e-9)
 
 
 def test_a_frame_is_wrong_beyond_noise(readings):
