@@ -154,11 +154,13 @@ def _likely(readings: Readings, loaded: Booleans) -> str:
 def scatter_of_contacts(passes: Sequence[Readings], found: Sequence[pd.DataFrame]) -> float | None:
     """Median distance, over the first pass's stations, of contacts from their mean over passes.
 
-    Those of the other passes are interpolated; None if no foot position is common to two.
+    Those of the other passes in its direction are interpolated; None if no foot position is common
+    to two.
     """
-    at = passes[0].values("foot_x")
+    at, bends_left = passes[0].values("foot_x"), passes[0].bends_left
+    alike = [pair for pair in zip(passes, found, strict=True) if pair[0].bends_left == bends_left]
     places = []
-    for one, table in zip(passes, found, strict=True):
+    for one, table in alike:
         foot_x, x, y = one.values("foot_x"), *table[["contact_x", "contact_y"]].to_numpy().T
         there = np.isfinite(x)
         order = np.flatnonzero(there)[np.argsort(foot_x[there])]

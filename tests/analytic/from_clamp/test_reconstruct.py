@@ -20,6 +20,7 @@ from analytic import (
     require_beam,
     solve_sweep,
 )
+from analytic.from_clamp.reconstruct import scatter_of_contacts
 from tests.analytic.noisy import noisy
 
 
@@ -150,3 +151,10 @@ def test_any_numbers_give_a_contact_on_the_vibrissa_or_a_reason(rows):
     good = found["status"] == "ok"
     assert found.loc[good, "contact_arc_length"].between(0, 1.1).all()
     assert found.loc[~good, "contact_x"].isna().all()
+
+
+def test_passes_there_and_back_scatter_by_direction():
+    """At one foot position a sweep to the left and one to the right touch different places."""
+    left = solve_sweep(named_case("catenary"))
+    passes = [left, left.mirrored(), left]
+    assert scatter_of_contacts(passes, [reconstruct(one) for one in passes]) == 0
