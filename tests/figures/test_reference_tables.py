@@ -52,6 +52,7 @@ def check(request):
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.version_info >= (3, 12), reason="NumPy's last digit is another one there")
 def test_the_tables_are_made_again_bit_for_bit(tmp_path):
     written = write_tables(tmp_path)
@@ -90,6 +91,7 @@ def plantings():
         yield name, table, said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("noise", "tolerance"), [(0.0, 1e-6), (3e-3, 1e-2)])
 def test_plantings_are_named(check, noise, tolerance, tmp_path):
     """In a file that is exact, and in one of an engine; with the line ends of Windows."""

@@ -5,6 +5,7 @@ import pytest
 from tests.fuzz.models import main
 
 
+@pytest.mark.slow
 def test_foreign_models_are_inspected_and_fixed():
     assert main(10, 11) == 0
 

@@ -62,6 +62,7 @@ def sweeps():
     return {name: swept(body) for name, (body, _) in BODIES.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BODIES)
 def test_exact_readings_give_the_body_and_its_family(sweeps, name):
     found = fit_body(sweeps[name], "auto")

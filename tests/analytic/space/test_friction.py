@@ -105,6 +105,7 @@ def test_across_a_prism_it_is_the_plane_s(friction: float) -> None:
     assert np.nanmax(np.abs(space.values("friction_z"))) < 1e-15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", [BALL, EGG])
 def test_little_friction_differs_in_proportion(body: Body) -> None:
     free = _swept(body, OBLIQUE, 0.0).values(*CLAMP)

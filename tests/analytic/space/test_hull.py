@@ -58,6 +58,7 @@ def beyond(band, body):
     return far, float((near @ band.outer.normals.T - band.outer.heights).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BODIES)
 def test_the_true_body_is_between_the_two(sweeps, name):
     band = convex_band(sweeps[name])

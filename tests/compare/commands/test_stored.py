@@ -72,6 +72,7 @@ def test_a_run_that_is_damaged_is_one_line(tmp_path, sweep, name, content, said)
     assert set(tmp_path.iterdir()) == there
 
 
+@pytest.mark.slow
 def test_rigs_side_by_side(tmp_path, sweep):
     """Columns, units, decimal commas, rows out of order; the engine's file beside them as it is."""
     sweep.write(tmp_path / "analytic.parquet")

@@ -157,6 +157,7 @@ def test_faults_planted_in_mujoco(name, settings, said):
     assert found.likely is None if said is None else str(found.likely).startswith(said)
 
 
+@pytest.mark.slow
 def test_two_faults_at_once_are_both_named():
     case = named_case("catenary")
     both = altered(force_x=lambda f: 1.02 * f, moment_z=lambda m: m + 0.1)(case)

@@ -40,6 +40,7 @@ def test_slopes_are_of_one_phase_each():
     assert np.isnan(found[:, 11:]).all()
 
 
+@pytest.mark.slow
 def test_a_fault_of_a_small_size_is_its_signature():
     """Solved at that size, and as it acts on the readings. Observed: to 4e-3 of the largest."""
     found = measure(solved(), solved(), 5e-3)

@@ -40,6 +40,7 @@ SIZE = 2e-3
 BEAM = RESOLVED.beam
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "changed"),
     [

@@ -52,6 +52,7 @@ def by_hand(case):
     }
 
 
+@pytest.mark.slow
 def test_each_is_larger_by_a_thousandth_of_its_unit(case, found):
     wanted = by_hand(case)
     assert STEP == 1e-3
@@ -70,6 +71,7 @@ def test_each_is_larger_by_a_thousandth_of_its_unit(case, found):
             assert apart < 5e-3 * np.abs(true[known]).max()
 
 
+@pytest.mark.slow
 def test_a_plain_vibrissa_and_one_that_varies_have_no_more_than_they_can():
     plain = replace(PARABOLA, sweep=Sweep(20))
     assert "tip_radius" in variations(plain)

@@ -11,6 +11,7 @@ from compare.show.animation.plane import write_animation
 from tests.compare.show import sweeps
 
 
+@pytest.mark.slow
 def test_files(tmp_path):
     exact, simulated = sweeps.exact("two-circles"), sweeps.candidate("two-circles")
     drawn = []

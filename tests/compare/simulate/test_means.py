@@ -19,6 +19,7 @@ def test_without_a_way_they_are_the_stations_own():
     assert found.table[[*CLAMP_READINGS]].equals(plain.table[[*CLAMP_READINGS]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("average", [1.0, 0.5])
 def test_they_are_means_over_the_way_round_each_station(average):
     found = sweep_as_means(CASE, SETTINGS, average)

@@ -159,6 +159,7 @@ def test_what_the_users_own_hook_chose_is_not_chosen_again(pytester):
     pytester.runpytest("-W", "error").assert_outcomes(passed=3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hidden", ["compare", "analytic", "mujoco_models"])
 def test_a_file_of_the_users_that_hides_a_package(pytester, hidden):
     """Who does not use the plugin does not notice it; who does learns which file it is."""

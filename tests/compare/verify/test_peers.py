@@ -43,6 +43,7 @@ def test_the_capstan_holds_what_its_formula_says(missing):
     assert row.exact == pytest.approx(ratio * 0.15 + 0.051 * 0.6 / 1.09 * (ratio + 1), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_exudyns_printed_numbers():
     for row in rows("exudyn"):
         if row.run is not None:

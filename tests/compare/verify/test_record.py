@@ -53,6 +53,7 @@ def test_digits_are_those_of_the_printed_number():
     assert (row.state, row.digits) == ("differs", 3)
 
 
+@pytest.mark.slow
 def test_a_reason_that_is_computed_must_make_the_number():
     (source,) = (
         one for one in record.sources() if one["name"].startswith("Nachbagauer et al. 2011")
@@ -65,6 +66,7 @@ def test_a_reason_that_is_computed_must_make_the_number():
     assert [row.state for row in record.verify([{**small, "row": coarse}])] == ["differs"] * 2
 
 
+@pytest.mark.slow
 def test_elements_have_the_rod_for_their_limit():
     given = 1.0, 0.1, 0.1, 1e6, 0.3, [0.0, -0.4, 0.3]
     rod, *coarse = (rods.rectangle(*given, elements=n)["y"] for n in (None, 8, 16, 32))

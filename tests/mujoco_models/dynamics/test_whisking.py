@@ -25,6 +25,7 @@ def test_a_path_along_x_moves_as_the_sweep():
     np.testing.assert_array_equal(found.values("foot_x"), expected.values("foot_x"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [TURNS, MOVES], ids=["turns", "moves and turns"])
 def test_the_slower_the_nearer_to_rest(case):
     motions = [

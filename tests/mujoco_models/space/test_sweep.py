@@ -160,6 +160,7 @@ def test_where_it_slips_off(body, points):
     assert found == pytest.approx(exact, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_where_it_slips_off_hangs_on_no_distance_between_stations():
     """Beyond, the vibrissa is stable on the other side: a long step would go on there."""
     body = ellipsoid((1.54, 0.327, 0.456), (0, 0.737, 0))

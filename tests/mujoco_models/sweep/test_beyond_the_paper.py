@@ -55,6 +55,7 @@ def largest_rms(exact, simulated):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beam", available_beams())
 def test_all_at_once_is_of_second_order(beam):
     """Facets out of the way: the primitive has none."""

@@ -30,6 +30,7 @@ from tests.analytic.solver.general.sound import assert_confirmed
 PROFILES = catenary(0.5, -0.8), parabola(0.5, 0.5), two_circles()
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(
     st.sampled_from(PROFILES),

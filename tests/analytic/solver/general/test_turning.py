@@ -93,6 +93,7 @@ def test_references(case):
         assert events[name] == pytest.approx(value, rel=1e-11)
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(
     st.sampled_from(sorted(PROFILES)),

@@ -83,6 +83,7 @@ def test_events(natural):
     np.testing.assert_allclose(corners.force_y, ROWS["F_Ay"].iloc[-1], **EXACT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "statuses"),
     [

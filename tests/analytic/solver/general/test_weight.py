@@ -143,6 +143,7 @@ VARIED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", VARIED, ids=lambda case: f"{case.weight}")
 def test_integration_from_the_clamp_to_the_tip_confirms_it(case):
     readings, found, _ = assert_confirmed(case, integrated=1e-11, seen=1e-12)

@@ -62,6 +62,7 @@ def abandon(folder, plan, results):
     os._exit(9)
 
 
+@pytest.mark.slow
 def test_what_a_dead_process_wrote_is_there(tmp_path, plan, stored, warned):
     process = multiprocessing.get_context("spawn").Process(
         target=abandon, args=(tmp_path, plan, stored)

@@ -100,6 +100,7 @@ def test_a_run_that_kills_its_workers_is_the_only_one_given_up(plan):
     assert bad["beam.radius"] == 0.002
 
 
+@pytest.mark.slow
 def test_a_stuck_run_is_ended(plan):
     recipe = replace(plan.study.recipe, timeout=0.2)
     rows = [result.row for result in carry_out(plan, recipe, crew(stuck))]

@@ -20,6 +20,7 @@ noise.relative = 0.01
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "outcomes"),
     [
