@@ -30,6 +30,7 @@ from compare.simulate.treatment import (
     evened,
     first_stiffness,
     frictionless,
+    from_mocap_to_rail,
     half_cell,
     hardened,
     hardest,
@@ -89,7 +90,7 @@ class Remark:
     edits: tuple[Edit | Insert, ...] = ()  # that fix it
 
     def __str__(self) -> str:
-        said = [self.remedy, *(f"set {edit}" for edit in self.edits)]
+        said = [self.remedy, *(f"set {edit}" for edit in self.edits if f"{edit}")]
         return "; ".join(filter(None, (f"{self.kind}, {self.subject}: {self.text}", *said)))
 
 
@@ -286,6 +287,11 @@ def _foot(found: MeasuredBeam) -> Iterator[Remark]:
     elif "which is a force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
                      "its speed")  # fmt: skip
+    elif found.drive.startswith("mocap") and not found.planar:
+        yield Remark("fault", "foot", f"{found.drive} has no speed in MuJoCo, so that the dampers "
+                     "of contacts do not see it move: they chatter, and the vibrissa leaves the "
+                     "plane of the sweep", "let a motor move it on a slide",
+                     from_mocap_to_rail(found))  # fmt: skip
     elif "mocap" in found.drive:
         yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
                      "contacts do not see it move: on the far side of an object contacts chatter. "

@@ -34,6 +34,7 @@ _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 de
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
+_TINY = 1e-11  # of the longest cell or largest bend; what is less, only rounding has
 _LONGEST = 1e60  # a first period: its fourth power is a number, too
 _WORLD = 0.999999  # cosine; along an axis of the world
 _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
@@ -229,7 +230,15 @@ def _joints(
     names = [held.model.body(body).name or f"body {body}" for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
     masses = masses_of(held.model, bodies)
-    figures = np.stack([s, np.diff(bounds), compliance, angles, damping, masses], axis=1).tolist()
+    cells = np.diff(bounds)
+    for name, cell, bends in zip(names, cells, compliance, strict=True):
+        if not (cell > _TINY * length and bends > _TINY * compliance.max()):
+            raise InputError(
+                f"body {name!r} of the vibrissa", "without a bend in the plane of the others'",
+                "hinged across the same plane as they, at a place of its own",
+                "turn its hinge or add one, or say which is the vibrissa with --foot",
+            )  # fmt: skip
+    figures = np.stack([s, cells, compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
         Joint(name, (*joints_of(held.model, body),), *row)
         for name, body, row in zip(names, bodies, figures, strict=True)

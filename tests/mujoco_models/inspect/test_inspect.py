@@ -256,6 +256,16 @@ def test_what_is_coupled_held_or_turned_is_no_beam(tmp_path, chain, old, new, sa
     assert "\n" not in str(caught.value)
 
 
+def test_a_link_that_bends_in_another_plane_alone_is_named(tmp_path):
+    """As those of tails of animals: MuJoCo's suite has dogs and rodents with such."""
+    path = Chain().write(tmp_path)
+    one, other = (f'pos="0 0.05 0"><joint axis="{axis}"' for axis in ("0 0 1", "1 0 0"))
+    path.write_text(path.read_text().replace(one, other, 3))
+    with pytest.raises(InputError, match=r"'whisker2' .* = without a bend in the plane") as said:
+        inspect_model(path)
+    assert "\n" not in str(said.value)
+
+
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
     found = measured(tmp_path, both, foot="whisker-foot")
