@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic import InputError
-from compare.simulate.expected import expected
+from compare.simulate.expected import SPEED, expected
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
     as_intended,
@@ -23,8 +23,6 @@ from mujoco_models.fix.write import fixed
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import MeasuredBeam
 
-SPEED = 0.05
-"""Of the sweep that is predicted [L/T1]."""
 CASE_MARK = "# Written by `vibrissa inspect --write`: the vibrissa"
 """The first line of a case file that is not a user's own."""
 _ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step

@@ -1,4 +1,4 @@
-"""Which elements of a file the compiled model's bodies, geoms, joints, sites and welds are."""
+"""Which elements of a file the compiled model's bodies, geoms, joints and so on are."""
 
 from collections.abc import Callable, Iterable, Iterator
 
@@ -25,13 +25,15 @@ class Places:
         equalities = [e for c in root.children if c.tag == "equality" for e in c.children]
         equalities = [e for e in equalities if e.tag in _EQUALITIES]
         self._pair("weld", equalities, range(model.neq), model.equality)
+        actuators = [e for c in root.children if c.tag == "actuator" for e in c.children]
+        self._pair("actuator", actuators, range(model.nu), model.actuator)
         sensors = [e for c in root.children if c.tag == "sensor" for e in c.children]
         self._pair("sensor", sensors, range(model.nsensor), model.sensor)
 
     def element(self, kind: str, number: int) -> Element | None:
         """What stands for it in the file; None if that is not to be seen."""
-        if kind == "option":
-            return self._only("option")
+        if kind in ("option", "flag"):
+            return self._only(kind)
         if (kind, number) in self._found:
             return self._found[kind, number]
         many = self.many(kind, number)

@@ -10,12 +10,13 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
+from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
-    bodies_of_constraint,
     drive_of,
     holders,
     joints_of,
     movable,
+    reach_of,
     slides,
 )
 from mujoco_models.inspect.hand import measure_hand, on_weld
@@ -62,7 +63,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     rest. The axes of the sweep are x against the sweep, y along the vibrissa, z the axis of its
     hinges.
     """
-    _check_constraints(model, parts)
+    check_constraints(model, parts)
+    check_tendons(model, parts)
     held = hold(model, parts)
     held.unload()
     axes = sweep_axes(held)
@@ -94,6 +96,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive_of(model, parts.foot, -axes[0]),
+        reach=reach_of(model, parts.foot, -axes[0]),
+        switched=_switched(model),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
@@ -204,18 +208,6 @@ def _aside(points: Floats, direction: Floats) -> Floats:
 def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
     terms = getattr(model, "jnt_stiffnesspoly", np.zeros((model.njnt, 1)))
     return not terms[np.isin(model.jnt_bodyid, parts.chain)].any()
-
-
-def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
-    """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
-    for i in np.flatnonzero(model.eq_active0).tolist():
-        bodies = model.body_weldid[bodies_of_constraint(model, i)].tolist()
-        for body in set(bodies).intersection(parts.chain):
-            raise InputError(
-                f"body {model.body(body).name!r} of the vibrissa",
-                "held by an equality constraint", "one that springs alone hold",
-                "remove the constraint, or set active=\"false\"",
-            )  # fmt: skip
 
 
 def _joints(
@@ -364,6 +356,15 @@ def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
     if not joints.size:
         return ()
     return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+
+
+def _switched(model: mujoco.MjModel) -> tuple[tuple[str, str], ...]:
+    off, on = mujoco.mjtDisableBit, mujoco.mjtEnableBit
+    disabled = {"constraint": off.mjDSBL_CONSTRAINT, "contact": off.mjDSBL_CONTACT,
+                "actuation": off.mjDSBL_ACTUATION}  # fmt: skip
+    found = [(name, "enable") for name, bit in disabled.items() if model.opt.disableflags & bit]
+    overrides = model.opt.enableflags & on.mjENBL_OVERRIDE
+    return (*found, *([("override", "disable")] if overrides else []))
 
 
 def _undone(model: mujoco.MjModel) -> float:

@@ -30,8 +30,8 @@ from rich.console import Console
 from analytic import InputError, solve_sweep
 from compare import compare
 from compare.read.case import load_case
-from compare.simulate.expected import expected
-from compare.simulate.fixing import SPEED, case_of, fix
+from compare.simulate.expected import SPEED, expected
+from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from mujoco_models import available_beams, inspect_model, shipped_models, simulate_model
 from tests.compare.simulate.published import cable

@@ -127,9 +127,10 @@ def changed(tmp_path, chain, *changes):
     return Inspection(inspect_model(path), STATED)
 
 
-def test_disabled_contacts_meet_nothing(tmp_path):
+def test_disabled_contacts_are_named(tmp_path):
     found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
-    assert any("21 of 21 geoms" in str(fault) for fault in found.faults)
+    assert {fault.subject for fault in found.faults} >= {"flags"}
+    assert not any("21 of 21 geoms" in str(fault) for fault in found.faults)
 
 
 def test_what_is_only_seen_is_no_part_of_it(tmp_path):
