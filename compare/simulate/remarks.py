@@ -326,7 +326,7 @@ def _flags(found: MeasuredBeam) -> Iterator[Remark]:
 def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     meeting_objects = contacts(found, contype="0", conaffinity="1")
     through = [geom for geom in found.geoms if not geom.meets]
-    if through and not found.switched:
+    if through and not {"contact", "constraint"}.intersection(dict(found.switched)):
         ends = (through[0].start / found.length, through[-1].end / found.length)
         shown = ", ".join(repr(geom.name) for geom in through[:4])
         yield Remark("fault", "contact", f"{len(through)} of {len(found.geoms)} geoms, s = "

@@ -32,8 +32,6 @@ class Places:
 
     def element(self, kind: str, number: int) -> Element | None:
         """What stands for it in the file; None if that is not to be seen."""
-        if kind in ("option", "flag"):
-            return self._only(kind)
         if (kind, number) in self._found:
             return self._found[kind, number]
         many = self.many(kind, number)
@@ -46,10 +44,6 @@ class Places:
         if len(found) > 1 and kind in ("geom", "joint"):
             name = getattr(self._model, kind)(number).name
             found = [e for e in found if name.startswith(e.attributes.get("prefix") or "\0")]
-        return found[0] if len(found) == 1 else None
-
-    def _only(self, tag: str) -> Element | None:
-        found = [e for e in self.root.below() if e.tag == tag]
         return found[0] if len(found) == 1 else None
 
     def defaults(self, kind: str, element: Element) -> Iterator[Element]:

@@ -292,6 +292,18 @@ def test_a_link_that_bends_in_another_plane_alone_is_named(tmp_path):
     assert "\n" not in str(said.value)
 
 
+@pytest.mark.parametrize("touches", ["", 'contype="0" conaffinity="0"'])
+def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
+    """Balls on capsules, whether these touch or nothing does."""
+    seen = '<geom type="sphere" size="0.03" pos="0 0.05 0.1" contype="0" conaffinity="0" mass="0"/>'
+    path = Chain().write(tmp_path)
+    text = path.read_text().replace('condim="1"', f'condim="1" {touches}')
+    path.write_text(text.replace("<joint axis", f"{seen}<joint axis"))
+    found = inspect_model(path)
+    assert [geom.radius for geom in found.geoms] == [0.005] * 21
+    assert found.length == pytest.approx(1)
+
+
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
     found = measured(tmp_path, both, foot="whisker-foot")
