@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from compare.simulate.expected import SPEED
 from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
 from compare.simulate.rigidity import as_intended
-from compare.simulate.treatment import from_mocap_to_rail, held, on_rail
+from compare.simulate.treatment import held, on_rail
 from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.measured import MeasuredBeam
 
@@ -25,11 +25,6 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
     elif "which is a force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
                      "its speed")  # fmt: skip
-    elif found.drive.startswith("mocap") and not found.planar:
-        yield Remark("fault", "foot", f"{found.drive} has no speed in MuJoCo, so that the dampers "
-                     "of contacts do not see it move: they chatter, and the vibrissa leaves the "
-                     "plane of the sweep", "let a motor move it on a slide",
-                     from_mocap_to_rail(found))  # fmt: skip
     elif "mocap" in found.drive:
         yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
                      "contacts do not see it move: on the far side of an object contacts chatter. "

@@ -212,11 +212,6 @@ def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:
     )
 
 
-def from_mocap_to_rail(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
-    """The same of a body that was mocap."""
-    return Edit("body", (("mocap", ""),), (found.body,)), *on_rail(found)
-
-
 def _text(numbers: Floats, unit: float = 1.0) -> str:
     """Without what rounding leaves of zeros."""
     return " ".join(f"{x:.9g}" for x in np.round(numbers / unit, 9) * unit + 0.0)
