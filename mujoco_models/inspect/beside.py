@@ -1,11 +1,14 @@
-"""What holds the vibrissa of a user's model beside its springs: constraints and tendons."""
+"""What holds a user's vibrissa beside its springs: constraints, tendons, limits and friction."""
 
 import mujoco
 import numpy as np
 
+from analytic.problem.arrays import Integers
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import bodies_of_constraint
 from mujoco_models.inspect.parts import Parts
+
+_PAST = 0.05  # rad; by which a joint is past its limit in a sweep
 
 
 def check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
@@ -45,3 +48,34 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
                 "one that springs alone hold",
                 f"take tendon {model.tendon(tendon).name!r} away, or its stiffness and limits",
             )  # fmt: skip
+
+
+def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:
+    """The moment by which friction holds a joint that turns at a rate: the median of them.
+
+    MuJoCo's friction of joints is a damper whose moment has a bound, `frictionloss`; how strong it
+    is goes with solreffriction, in the model's own unit of time.
+    """
+    if not model.dof_frictionloss[dofs].any():
+        return 0.0
+    data = mujoco.MjData(model)
+    data.qvel[dofs] = rate
+    mujoco.mj_forward(model, data)
+    rubs = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
+    mine = rubs & np.isin(data.efc_id, dofs)
+    held = np.abs(data.efc_D * data.efc_aref)[mine]
+    return float(np.median(np.minimum(held, data.efc_frictionloss[mine])))
+
+
+def limit_stiffness(model: mujoco.MjModel, parts: Parts) -> float:
+    """Of the limits of its hinges, as soft as solreflimit makes them: the median of them."""
+    mine = np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1)
+    hinges = np.flatnonzero(mine & (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE))
+    if not hinges.size:
+        return 0.0
+    data = mujoco.MjData(model)
+    data.qpos[model.jnt_qposadr[hinges]] = model.jnt_range[hinges, 1] + _PAST
+    mujoco.mj_forward(model, data)
+    ends = data.efc_type == mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT
+    ends &= np.isin(data.efc_id, hinges)
+    return float(np.median((data.efc_D * data.efc_aref)[ends])) / _PAST if ends.any() else 0.0

@@ -10,7 +10,12 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.beside import check_constraints, check_tendons
+from mujoco_models.inspect.beside import (
+    check_constraints,
+    check_tendons,
+    friction_loss,
+    limit_stiffness,
+)
 from mujoco_models.inspect.drive import (
     drive_of,
     holders,
@@ -32,6 +37,7 @@ from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
@@ -131,8 +137,9 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
             mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
-        friction_loss=float(model.dof_frictionloss[held.dofs].max()),
+        friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
         limits=_limits(model, parts),
+        limit_stiffness=limit_stiffness(model, parts),
     )
 
 

@@ -165,9 +165,11 @@ class MeasuredBeam(Shown):
     cone : str
         Of friction.
     friction_loss : float
-        The largest of a joint.
+        The largest moment by which friction holds a joint as fast as it turns in a sweep.
     limits : tuple of float
         The smallest turn at which a joint of the vibrissa is limited [rad]; empty without any.
+    limit_stiffness : float
+        Moment over turn past such a limit.
     """
 
     model: str
@@ -211,6 +213,7 @@ class MeasuredBeam(Shown):
     cone: ConeKind
     friction_loss: float
     limits: tuple[float, ...]
+    limit_stiffness: float
 
     @property
     def natural_curvature(self) -> float:

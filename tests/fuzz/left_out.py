@@ -1,7 +1,7 @@
-"""All faults of random models mended but one: ``python -m tests.fuzz.left_out N [SEED]``.
+"""All faults of random models fixed but one: ``python -m tests.fuzz.left_out N [SEED]``.
 
 What `inspect` still says of such a model is held against its sweep, beside that of the model with
-all mended, past the same object. A line a model says which fault was left, what is named, and how
+all fixed, past the same object. A line a model says which fault was left, what is named, and how
 far the sweeps differ; and as flags:
 
 - ``also``: something is named beside what was left;
@@ -43,7 +43,7 @@ _TOGETHER = (
 )
 
 
-def mended(path: Path, out: Path, left: set[str]) -> Inspection:
+def without_faults(path: Path, out: Path, left: set[str]) -> Inspection:
     """Write a copy with what a number fixes, but for some subjects."""
     model, inspection = load(path), Inspection(inspect_model(path))
     done = list[Edit | Insert]()
@@ -63,18 +63,19 @@ def swept(case: Path, file: Path) -> Readings:
     """A model past a case's object."""
     text = case.read_text()
     own = case.with_name(f"{file.stem}.toml")
-    own.write_text(text.replace('file = "mended.xml"', f'file = "{file.name}"'))
+    own.write_text(text.replace('file = "whole.xml"', f'file = "{file.name}"'))
     job = load_case(own)
     return simulate_model(job.case, job.model, job.motion, job.settings)
 
 
-def moved_by(case: Path, file: Path, all_mended: Readings) -> float:
-    """How far its readings are from those of the mended model; infinite if it gives none."""
+def moved_by(case: Path, file: Path, all_fixed: Readings) -> float:
+    """How far its readings are from those of the fixed model; infinite if there are none."""
     try:
-        parts = compare(all_mended, swept(case, file)).disagreement
+        parts = compare(all_fixed, swept(case, file)).disagreement
     except InputError:
         return float("inf")
-    return max(part.rms for part in parts.values())
+    off = max(part.rms for part in parts.values())
+    return off if off >= 0 else float("inf")  # NaN of a sweep that diverged
 
 
 def trial(rng: random.Random, folder: Path) -> tuple[str, list[str]]:
@@ -84,22 +85,22 @@ def trial(rng: random.Random, folder: Path) -> tuple[str, list[str]]:
         model = drawn(rng)
     path = folder / "foreign.xml"
     path.write_text(rewritten(model.text(), model.ways, folder, rng))
-    all_mended = mended(path, folder / "mended.xml", set())
+    all_fixed = without_faults(path, folder / "whole.xml", set())
     faults = sorted({fault.subject for fault in Inspection(inspect_model(path)).faults})
     said = f"{model.planted} {faults}"
-    if not all_mended.sound:
-        return f"{said}, not mended: {[str(fault) for fault in all_mended.faults]}", []
+    if not all_fixed.sound:
+        return f"{said}, not fixed: {[str(fault) for fault in all_fixed.faults]}", []
     one = rng.choice(faults)
     together = next((group for group in _TOGETHER if one in group), {one})
-    found = mended(path, folder / "left.xml", {one})
+    found = without_faults(path, folder / "left.xml", {one})
     named = {fault.subject for fault in found.faults}
     case = folder / "case.toml"
-    case.write_text(case_of(all_mended.found, folder / "mended.xml", {}))
-    by = moved_by(case, folder / "left.xml", swept(case, folder / "mended.xml"))
+    case.write_text(case_of(all_fixed.found, folder / "whole.xml", {}))
+    by = moved_by(case, folder / "left.xml", swept(case, folder / "whole.xml"))
     flags = [f"also {sorted(named - together)}"] if named - together else []
     if named and not by > _MATTERS:
         flags.append("false")
-    if not named and by > expected(all_mended.found, SPEED).interval[1]:
+    if not named and by > expected(all_fixed.found, SPEED).interval[1]:
         flags.append("sound")
     return f"{said}, left {one!r}: named {sorted(named)}, moves by {by:.1e}", flags
 

@@ -75,7 +75,7 @@ def _with_tendon(text: str, folder: Path, rng: random.Random) -> str:
 
 
 def _loosely_tied(text: str, folder: Path, rng: random.Random) -> str:
-    """An equality constraint is switched off, and two links are told not to touch."""
+    """An equality constraint is switched off, and two links do not touch."""
     off = '<equality><connect body1="link3" anchor="0 0 0" active="false"/></equality>'
     return _with(text, off + '<contact><exclude body1="link1" body2="link3"/></contact>')
 
