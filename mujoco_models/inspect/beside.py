@@ -64,7 +64,8 @@ def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:
     rubs = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
     mine = rubs & np.isin(data.efc_id, dofs)
     held = np.abs(data.efc_D * data.efc_aref)[mine]
-    return float(np.median(np.minimum(held, data.efc_frictionloss[mine])))
+    most = data.efc_frictionloss[mine]
+    return float(np.median(np.minimum(held, most))) if mine.any() else 0.0
 
 
 def limit_stiffness(model: mujoco.MjModel, parts: Parts) -> float:

@@ -333,7 +333,7 @@ def _hidden(model: Model) -> set[str]:
     if model.carrier == "weld":
         hidden |= {"force sensor", "foot"}
     if "flags, constraint" in model.planted:
-        hidden |= {"contact", "time step", "limits"}
+        hidden |= {"contact", "time step", "limits", "friction in joints"}
     return hidden
 
 
