@@ -15,6 +15,9 @@ from compare.simulate.rigidity import (
 )
 from mujoco_models.inspect.measured import MeasuredBeam
 
+SPEED = 0.05
+"""Of the sweep that is predicted [L/T1]."""
+
 # What each setting costs, as the worst reading's rms: `mujoco_models/quasi-static.md`, but for the
 # contact, of which a part is handed on from link to link.
 _LINKS = 0.9  # over the square of their number

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic import InputError
-from compare.simulate.expected import expected
+from analytic import Beam, Case, InputError, circle, solve_sweep
+from compare.simulate.expected import SPEED, expected
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
     as_intended,
@@ -16,6 +16,7 @@ from compare.simulate.rigidity import (
     is_curved,
     radii,
     smooth_rigidity,
+    tapers,
 )
 from mujoco_models import inspect_model
 from mujoco_models.fix.edit import Edit, Insert
@@ -23,11 +24,11 @@ from mujoco_models.fix.write import fixed
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import MeasuredBeam
 
-SPEED = 0.05
-"""Of the sweep that is predicted [L/T1]."""
 CASE_MARK = "# Written by `vibrissa inspect --write`: the vibrissa"
 """The first line of a case file that is not a user's own."""
 _ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step
+_UNTIL = ", until it would leave its plane"
+_CIRCLE, _LOWEST = 0.8, 0.4  # L; radius of the circle, and how high it is
 _STATIONS = 21  # of a varying EI
 
 
@@ -46,7 +47,9 @@ class Fixed:
         for fault in self.inspection.faults:
             yield f"  left, {fault.subject}: {fault.text}"
         if self.inspection.sound:
-            yield f"  expected at {SPEED} L/T1: {expected(self.inspection.found, SPEED)}"
+            until = "" if stop_of(self.inspection.found) is None else _UNTIL
+            found = expected(self.inspection.found, SPEED)
+            yield f"  expected at {SPEED} L/T1{until}: {found}"
 
 
 def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Fixed:
@@ -74,10 +77,40 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
     return Fixed(files, tuple(done), inspection)
 
 
+def stop_of(found: MeasuredBeam) -> float | None:
+    """Where the foot is as the vibrissa would leave the plane of the sweep; None if it cannot.
+
+    That is where the object recedes (`analytic/out-of-plane.md`), unless friction holds it.
+    """
+    if found.planar or _friction(found):
+        return None
+    length, rigidity = found.length, as_intended(found)
+    s = np.linspace(0, length, _STATIONS)
+    pairs = list(zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True))
+    case = Case(
+        Beam(
+            length=length,
+            flexural_rigidity=pairs if tapers(found) else rigidity,
+            radius=radii(found)[0],
+            natural_curvature=found.natural_curvature if is_curved(found) else 0.0,
+        ),
+        circle(_CIRCLE * length, (0.0, _LOWEST * length)),
+        clamp_stiffness=clamp_stiffness(found) * rigidity / length,
+    )
+    exact = solve_sweep(case)
+    recedes = np.flatnonzero(exact.values("contact_angle") < 0)
+    return float(exact.values("foot_x")[recedes[0] - 1]) if recedes.size else None
+
+
+def _friction(found: MeasuredBeam) -> float:
+    """Of what touches."""
+    meeting = [geom for geom in found.geoms if geom.meets] or found.geoms
+    return max(geom.friction for geom in meeting)
+
+
 def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> str:
     """A case file: the vibrissa that the model is, past a circle."""
     length, rigidity = found.length, as_intended(found)
-    meeting = [geom for geom in found.geoms if geom.meets] or found.geoms
     radius, tip = radii(found)
     along = f"{smooth_rigidity(found, np.zeros(1))[0] if tip != radius else rigidity:.6g}"
     if not is_cone(found):
@@ -93,11 +126,12 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
     stiffness = clamp_stiffness(found)
     if np.isfinite(stiffness):
         lines += ["[support]", f"rotational_stiffness = {stiffness * rigidity / length:.6g}"]
-    friction = max(geom.friction for geom in meeting)
+    friction, stop = _friction(found), stop_of(found)
     if friction:
         lines += ["[contact]", f"friction = {friction:g}"]
-    lines += ["[profile]", 'kind = "circle"', f"radius = {0.8 * length:.6g}",
-              f"lowest = [0.0, {0.4 * length:.6g}]", "[sweep]", "stations = 60",
+    lines += ["[profile]", 'kind = "circle"', f"radius = {_CIRCLE * length:.6g}",
+              f"lowest = [0.0, {_LOWEST * length:.6g}]", "[sweep]", "stations = 60",
+              *([] if stop is None else [f"stop = {stop:.6g}  # then it would leave its plane"]),
               "[model]", f'file = "{file.name}"']  # fmt: skip
     lines += [f'{name} = "{value}"' for name, value in names.items() if value is not None]
     lines += ["[motion]", f"speed = {SPEED}"]

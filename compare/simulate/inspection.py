@@ -9,7 +9,8 @@ import numpy as np
 
 from analytic import Beam
 from compare.simulate.links import order_in_links
-from compare.simulate.remarks import Remark, remarks
+from compare.simulate.remark import Remark
+from compare.simulate.remarks import remarks
 from compare.simulate.rigidity import as_intended, at_its_tip, clamp_stiffness, elastica_error
 from mujoco_models import OwnModel, inspect_model
 from mujoco_models.inspect.measured import MeasuredBeam

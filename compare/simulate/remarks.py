@@ -1,12 +1,13 @@
 """What a user should know of a model that was measured: faults, and notes."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from analytic import Beam
+from compare.simulate.foot import on_foot
+from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
 from compare.simulate.rigidity import (
     as_intended,
     as_stated,
@@ -33,21 +34,18 @@ from compare.simulate.treatment import (
     half_cell,
     hardened,
     hardest,
-    held,
     joints,
     moving,
-    on_rail,
     solved,
     steps,
     stiffened,
     straightened,
     with_sensors,
 )
-from mujoco_models.fix.edit import Edit, Insert
+from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed, nearest_axes
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
-_RIGIDITY = 0.01  # relative; forces and moments are proportional to EI
 _LENGTH = 0.005  # relative; forces go with 1/L^2
 _RADIUS = 2e-3  # L; the contour that the axis feels is the radius away
 _JOINT = (
@@ -58,9 +56,8 @@ _TORSION = 0.2
 _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
 _LEVER = 5e-3  # L; of the force's moment
 _SAG = 2e-3  # L; as a contact that is so far off
-_SINKS = 2e-3  # L; likewise
-_FORCE = 3.0  # EI/L^2; the largest of a usual sweep
 _BENDS = 5.0  # rad; what all joints together turn by in a usual sweep, at most
+_RUBS = 2e-3  # EI/L; 3e-3 moves readings by 0.7 per cent: joints turn faster than in the mean, too
 _ELASTICA = 0.02  # L; a sound chain of ten links is off by 4e-3 at P L^2/EI = 10
 _METRES = 3.0  # a longer vibrissa is rather one in millimetres
 _HARDEST = 30.0  # EI/L^3 times the time step [T1] squared
@@ -77,22 +74,6 @@ _TURNING = 3.0  # times that; all of the mass at the tip makes 2.03
 _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
-@dataclass(frozen=True)
-class Remark:
-    """A line on a model."""
-
-    # A ``"fault"`` moves readings by about a per cent or more; a ``"note"`` is good to know.
-    kind: Literal["fault", "note"]
-    subject: str  # as ``"clamp"``
-    text: str  # in a sentence
-    remedy: str = ""  # what to do, beside edits
-    edits: tuple[Edit | Insert, ...] = ()  # that fix it
-
-    def __str__(self) -> str:
-        said = [self.remedy, *(f"set {edit}" for edit in self.edits)]
-        return "; ".join(filter(None, (f"{self.kind}, {self.subject}: {self.text}", *said)))
-
-
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
     """What there is to say of a model."""
     said = [
@@ -102,8 +83,9 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
         *_units(found, stated),
         *_rest(found, stated),
         *_plane(found),
-        *_foot(found),
+        *on_foot(found),
         *_sensors(found),
+        *_flags(found),
         *_contacts(found),
         *_steps(found),
         *_solver(found, stated),
@@ -115,7 +97,7 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
     rigidity = smooth_rigidity(found)
     own = np.array([joint.flexural_rigidity for joint in found.joints])
     off = by_its_clamp(found) / at_its_tip(found) - 1
-    if abs(off) > _RIGIDITY:
+    if abs(off) > RIGIDITY:
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
                      f"{'lower' if off < 0 else 'higher'} than its joints say: "
                      f"{_cause(found, own[0] / rigidity[0])}",
@@ -123,7 +105,7 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
                      beginning_later(found) or stiffened(found, {0: first_stiffness(found)})
                      )  # fmt: skip
     coarse = by_its_links(found) / at_its_tip(found) - 1
-    if abs(coarse) > _RIGIDITY:
+    if abs(coarse) > RIGIDITY:
         yield Remark("fault", "links", f"too few{' for its taper' if tapers(found) else ''}: the "
                      f"tip gives way like one of EI {abs(coarse):.1%} "
                      f"{'lower' if coarse < 0 else 'higher'}", "take more")  # fmt: skip
@@ -140,25 +122,27 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "uniformity", f"EI goes from {rigidity[0]:.4g} at the clamp to "
                      f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
     error = elastica_error(found)
-    if abs(off) <= _RIGIDITY and error > _ELASTICA and not found.limits:
+    if abs(off) <= RIGIDITY and error > _ELASTICA and not found.limits:
         straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
                      "cantilever",
                      "take more links" if found.linear else "its springs stiffen as they turn",
                      () if found.linear else stiffened(found, straight))  # fmt: skip
-    if found.limits and found.limits[0] < _BENDS * max(j.cell for j in found.joints) / found.length:
+    least = RIGIDITY * FORCE * as_intended(found) / found.length  # of a moment that matters
+    past = _BENDS * max(j.cell for j in found.joints) / found.length - min(found.limits, default=9)
+    if past * found.limit_stiffness > least:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
                      "degrees, less than a sweep bends it",
                      edits=(*joints(found, limited="false"),))  # fmt: skip
-    stretch = found.stretch * _FORCE * found.tip_rigidity / found.length**2
+    stretch = found.stretch * FORCE * found.tip_rigidity / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
         hard = Edit("edge", (("solref", hardest(found)), ("solimp", HARD)), (0,))
-        yield Remark("fault", "edges", f"a pull of {_FORCE:g} EI/L^2 stretches one {far}",
+        yield Remark("fault", "edges", f"a pull of {FORCE:g} EI/L^2 stretches one {far}",
                      edits=(hard,))  # fmt: skip
-    if found.friction_loss > 0:
-        yield Remark("fault", "friction in joints", f"frictionloss of {found.friction_loss:.3g} "
-                     "holds moments: the vibrissa stays bent",
+    if found.friction_loss > _RUBS * as_intended(found) / found.length:
+        yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
+                     "in each: the vibrissa stays bent",
                      edits=(*joints(found, frictionloss="0"),))  # fmt: skip
 
 
@@ -182,7 +166,7 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     scaled = {i: wanted_rigidity / own / joint.compliance for i, joint in enumerate(found.joints)}
     for what, measured, wanted, allowed, edits in (
         ("length", found.length, stated.length, _LENGTH, ()),
-        ("EI", own, wanted_rigidity, _RIGIDITY, stiffened(found, scaled)),
+        ("EI", own, wanted_rigidity, RIGIDITY, stiffened(found, scaled)),
     ):
         off = measured / wanted - 1
         if abs(off) > allowed:
@@ -249,7 +233,7 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
         sag = found.sag / found.length
         weight = found.weight * found.length**2 / found.tip_rigidity
         kind: Literal["fault", "note"] = "note"
-        if sag > _SAG or weight > _RIGIDITY * _FORCE:
+        if sag > _SAG or weight > RIGIDITY * FORCE:
             kind = "fault"
         read = (
             ""
@@ -273,38 +257,6 @@ def _plane(found: MeasuredBeam) -> Iterator[Remark]:
             "and leaves the plane of the sweep; a round rod of any material has 1 to 1.5",
             f"make what resists the twist {0.8 / found.torsion:.2g} times as stiff"
         )  # fmt: skip
-
-
-def _foot(found: MeasuredBeam) -> Iterator[Remark]:
-    yield from _hand(found)
-    if found.drive is None and found.objects:
-        shown = ", ".join(map(repr, found.objects[:4]))
-        yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
-    elif found.drive is None:
-        yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "make it a mocap body, "
-                     "or give it a slide joint across the vibrissa", on_rail(found))  # fmt: skip
-    elif "which is a force" in found.drive:
-        yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
-                     "its speed")  # fmt: skip
-    elif "mocap" in found.drive:
-        yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
-                     "contacts do not see it move: on the far side of an object contacts chatter. "
-                     "A slide joint with a velocity actuator has one")  # fmt: skip
-
-
-def _hand(found: MeasuredBeam) -> Iterator[Remark]:
-    hand, rigidity, length = found.hand, as_intended(found), found.length
-    if hand is None:
-        return
-    gives = _FORCE * rigidity / length**3 * hand.displacement
-    softer = 3 * rigidity / length * hand.rotation
-    if gives > _SINKS or softer > _RIGIDITY:
-        through = ", ".join(map(repr, hand.joints[:4]))
-        where = "the weld of " if hand.welds else ""
-        turns = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > 0 else ""
-        yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
-                     f": it {turns}moves by {gives:.1e} L under {_FORCE:g} EI/L^2",
-                     edits=held(found))  # fmt: skip
 
 
 def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
@@ -331,7 +283,7 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
             )  # fmt: skip
             continue
         yield from _axes(word, sensor)
-        most = _FORCE * found.tip_rigidity / found.length ** (2 if word == "force" else 1)
+        most = FORCE * found.tip_rigidity / found.length ** (2 if word == "force" else 1)
         if sensor.cutoff < 2 * most:
             yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
                          f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}",
@@ -367,10 +319,17 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
                      "along the vibrissa, z along its hinges)")  # fmt: skip
 
 
+def _flags(found: MeasuredBeam) -> Iterator[Remark]:
+    if found.switched:
+        named = ", ".join(name for name, _ in found.switched)
+        yield Remark("fault", "flags", f"<flag> switches {named}: contacts or drives are not what "
+                     "the model states", edits=(Edit("flag", found.switched, (0,)),))  # fmt: skip
+
+
 def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     meeting_objects = contacts(found, contype="0", conaffinity="1")
     through = [geom for geom in found.geoms if not geom.meets]
-    if through:
+    if through and not {"contact", "constraint"}.intersection(dict(found.switched)):
         ends = (through[0].start / found.length, through[-1].end / found.length)
         shown = ", ".join(repr(geom.name) for geom in through[:4])
         yield Remark("fault", "contact", f"{len(through)} of {len(found.geoms)} geoms, s = "
@@ -385,12 +344,12 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     if not meeting:
         return
     softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
-    sinks = _FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
-    if sinks > _SINKS:
+    sinks = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
+    if sinks > SINKS:
         depth = f"{sinks:.1e} L into the object"
         if sinks * found.length > 2 * softest.radius:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
-        yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {_FORCE:g} "
+        yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {FORCE:g} "
                      f"EI/L^2 sinks {depth}", edits=hardened(found))  # fmt: skip
     hard, fraction = contact_stiffness(found), found.timestep / found.period
     explicit = found.integrator in _EXPLICIT
@@ -445,7 +404,7 @@ def _steps(found: MeasuredBeam) -> Iterator[Remark]:
                      "of this mass: the links are far too hard to turn", "leave out <inertial>, or "
                      "give each link the inertia of its shape")  # fmt: skip
     slower = found.period / found.period_without_armature
-    if slower > 1 + _RIGIDITY:
+    if slower > 1 + RIGIDITY:
         yield Remark("note", "armature", f"makes the first period {slower:.3g} times as long")
     if found.damping_ratio > 1:
         yield Remark("fault", "damping", f"{found.damping_ratio:.2g} times critical: the vibrissa "

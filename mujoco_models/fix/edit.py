@@ -7,9 +7,8 @@ from dataclasses import dataclass
 class Edit:
     """New values of attributes of some elements of one kind."""
 
-    kind: (
-        str  # option, geom, joint, site or weld; edge for a flex's <edge>, contact for its contact
-    )
+    # Of MJCF, as joint or flag; edge for a flex's <edge>, contact for its <contact>.
+    kind: str
     attributes: tuple[tuple[str, str], ...]  # names and values; an empty value takes it away
     numbers: tuple[int, ...] = ()  # of the elements in the compiled model
 

@@ -1,4 +1,4 @@
-"""Which elements of a file the compiled model's bodies, geoms, joints, sites and welds are."""
+"""Which elements of a file the compiled model's bodies, geoms, joints and so on are."""
 
 from collections.abc import Callable, Iterable, Iterator
 
@@ -25,13 +25,13 @@ class Places:
         equalities = [e for c in root.children if c.tag == "equality" for e in c.children]
         equalities = [e for e in equalities if e.tag in _EQUALITIES]
         self._pair("weld", equalities, range(model.neq), model.equality)
+        actuators = [e for c in root.children if c.tag == "actuator" for e in c.children]
+        self._pair("actuator", actuators, range(model.nu), model.actuator)
         sensors = [e for c in root.children if c.tag == "sensor" for e in c.children]
         self._pair("sensor", sensors, range(model.nsensor), model.sensor)
 
     def element(self, kind: str, number: int) -> Element | None:
         """What stands for it in the file; None if that is not to be seen."""
-        if kind == "option":
-            return self._only("option")
         if (kind, number) in self._found:
             return self._found[kind, number]
         many = self.many(kind, number)
@@ -44,10 +44,6 @@ class Places:
         if len(found) > 1 and kind in ("geom", "joint"):
             name = getattr(self._model, kind)(number).name
             found = [e for e in found if name.startswith(e.attributes.get("prefix") or "\0")]
-        return found[0] if len(found) == 1 else None
-
-    def _only(self, tag: str) -> Element | None:
-        found = [e for e in self.root.below() if e.tag == tag]
         return found[0] if len(found) == 1 else None
 
     def defaults(self, kind: str, element: Element) -> Iterator[Element]:

@@ -62,8 +62,8 @@ class Texts:
 
     def set(self, edit: Edit) -> None:
         """Where an attribute stands already; else in a default of many, or in each element."""
-        if edit.kind == "option":
-            self._set_option(dict(edit.attributes))
+        if edit.kind in ("option", "flag"):
+            self._set_option(edit.kind, dict(edit.attributes))
             return
         found = [self._places.element(edit.kind, i) for i in edit.numbers]
         many = self._places.many(edit.kind, edit.numbers[0])
@@ -117,8 +117,11 @@ class Texts:
         else:
             self._change(element.file, end, end, f"{self._indent(element)}  {text}")
 
-    def _set_option(self, attributes: dict[str, str]) -> None:
+    def _set_option(self, kind: str, attributes: dict[str, str]) -> None:
+        """Where it is stated last, as MuJoCo reads it."""
         options = [e for e in self._places.root.children if e.tag == "option"]
+        if kind == "flag":
+            options = [e for option in options for e in option.children if e.tag == "flag"]
         for name, value in attributes.items():
             stated = [e for e in options if name in e.attributes] or options[:1]
             if stated:

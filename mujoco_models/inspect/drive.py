@@ -1,5 +1,6 @@
 """What can move the foot of a user's model."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -21,6 +22,53 @@ class Mover:
     mocap: int | None = None  # the mocap body
     joint: int | None = None  # the slide, or the free joint that is welded to the mocap body
     actuator: int | None = None  # of the slide
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far, how fast and how hard a slide can go along the sweep; infinite without a limit."""
+
+    joint: int
+    actuator: int | None
+    way: float  # to where its own range ends [length]
+    placed: float  # to where a position actuator's ctrlrange ends [length]
+    speed: float  # of a velocity actuator
+    force: float  # of an actuator
+    follows: bool  # whether it does what it is given at once
+
+
+def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
+    """What limits the slide that moves a body along the sweep; None of another drive."""
+    mover = mover_of(model, foot, left)
+    if mover is None or mover.mocap is not None or mover.joint is None:
+        return None
+    joint, actuator = mover.joint, mover.actuator
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    sense = float(np.sign(data.xaxis[joint] @ left))
+    start = float(model.qpos0[model.jnt_qposadr[joint]])
+
+    def ahead(limited: bool, ends: Floats, at: float) -> float:
+        return float(max((ends - at) * sense)) if limited else math.inf
+
+    way = ahead(bool(model.jnt_limited[joint]), model.jnt_range[joint], start)
+    if actuator is None or model.actuator_biastype[actuator] != _FOLLOWS:
+        return Reach(joint, actuator, way, math.inf, math.inf, math.inf, True)
+    by_place = model.actuator_biasprm[actuator, 1] != 0
+    gear = float(model.actuator_gear[actuator, 0])
+    given = model.actuator_ctrlrange[actuator] / gear
+    most = ahead(bool(model.actuator_ctrllimited[actuator]), given, start if by_place else 0.0)
+    limited = bool(model.actuator_forcelimited[actuator])
+    force = float(np.abs(model.actuator_forcerange[actuator] * gear).min())
+    return Reach(
+        joint=joint,
+        actuator=actuator,
+        way=way,
+        placed=most if by_place else math.inf,
+        speed=math.inf if by_place else most,
+        force=force if limited else math.inf,
+        follows=bool(model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE),
+    )
 
 
 def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:

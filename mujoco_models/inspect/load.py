@@ -7,13 +7,14 @@ import mujoco
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
+from mujoco_models.quiet import unlogged
 
 _LARGEST = 50_000_000  # bytes of the file itself; assets are MuJoCo's matter
 _SUFFIXES = (".xml", ".urdf")  # MuJoCo reads by the name what an object is to be added to
 _REMEDIES = (
     (r"flex with general attachments", "a flex that is a beam needs MuJoCo 4"),
     (r"plugin|composite", "only MuJoCo 3 has composite cables: pip install 'mujoco==3.17.*'"),
-    (r"mesh|stl|obj|msh|resource|open", "put its files where it says, or correct meshdir"),
+    (r"opening file|resource", "put its files where it says, or correct meshdir"),
     (r"mass and inertia", "give every moving body a mass"),
 )
 
@@ -30,9 +31,10 @@ def load(path: Path, site: str | None = None) -> mujoco.MjModel:
         )
     regular_file(path, "model", _LARGEST)
     try:
-        if site is None:
-            return mujoco.MjModel.from_xml_path(str(path))
-        return spec_of(path, site).compile()
+        with unlogged():
+            if site is None:
+                return mujoco.MjModel.from_xml_path(str(path))
+            return spec_of(path, site).compile()
     except InputError:
         raise
     except (ValueError, mujoco.FatalError) as error:

@@ -10,12 +10,18 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
+from mujoco_models.inspect.beside import (
+    check_constraints,
+    check_tendons,
+    friction_loss,
+    limit_stiffness,
+)
 from mujoco_models.inspect.drive import (
-    bodies_of_constraint,
     drive_of,
     holders,
     joints_of,
     movable,
+    reach_of,
     slides,
 )
 from mujoco_models.inspect.hand import measure_hand, on_weld
@@ -31,9 +37,11 @@ from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
+_TINY = 1e-11  # of the longest cell or largest bend; what is less, only rounding has
 _LONGEST = 1e60  # a first period: its fourth power is a number, too
 _WORLD = 0.999999  # cosine; along an axis of the world
 _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
@@ -61,7 +69,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     rest. The axes of the sweep are x against the sweep, y along the vibrissa, z the axis of its
     hinges.
     """
-    _check_constraints(model, parts)
+    check_constraints(model, parts)
+    check_tendons(model, parts)
     held = hold(model, parts)
     held.unload()
     axes = sweep_axes(held)
@@ -93,6 +102,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive_of(model, parts.foot, -axes[0]),
+        reach=reach_of(model, parts.foot, -axes[0]),
+        switched=_switched(model),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
@@ -126,8 +137,9 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
             mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
-        friction_loss=float(model.dof_frictionloss[held.dofs].max()),
+        friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
         limits=_limits(model, parts),
+        limit_stiffness=limit_stiffness(model, parts),
     )
 
 
@@ -205,18 +217,6 @@ def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
     return not terms[np.isin(model.jnt_bodyid, parts.chain)].any()
 
 
-def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
-    """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
-    for i in np.flatnonzero(model.eq_active0).tolist():
-        bodies = model.body_weldid[bodies_of_constraint(model, i)].tolist()
-        for body in set(bodies).intersection(parts.chain):
-            raise InputError(
-                f"body {model.body(body).name!r} of the vibrissa",
-                "held by an equality constraint", "one that springs alone hold",
-                "remove the constraint, or set active=\"false\"",
-            )  # fmt: skip
-
-
 def _joints(
     held: Held, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
 ) -> tuple[Joint, ...]:
@@ -229,7 +229,15 @@ def _joints(
     names = [held.model.body(body).name or f"body {body}" for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
     masses = masses_of(held.model, bodies)
-    figures = np.stack([s, np.diff(bounds), compliance, angles, damping, masses], axis=1).tolist()
+    cells = np.diff(bounds)
+    for name, cell, bends in zip(names, cells, compliance, strict=True):
+        if not (cell > _TINY * length and bends > _TINY * compliance.max()):
+            raise InputError(
+                f"body {name!r} of the vibrissa", "without a bend in the plane of the others'",
+                "hinged across the same plane as they, at a place of its own",
+                "turn its hinge or add one, or say which is the vibrissa with --foot",
+            )  # fmt: skip
+    figures = np.stack([s, cells, compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
         Joint(name, (*joints_of(held.model, body),), *row)
         for name, body, row in zip(names, bodies, figures, strict=True)
@@ -355,6 +363,15 @@ def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
     if not joints.size:
         return ()
     return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+
+
+def _switched(model: mujoco.MjModel) -> tuple[tuple[str, str], ...]:
+    off, on = mujoco.mjtDisableBit, mujoco.mjtEnableBit
+    disabled = {"constraint": off.mjDSBL_CONSTRAINT, "contact": off.mjDSBL_CONTACT,
+                "actuation": off.mjDSBL_ACTUATION}  # fmt: skip
+    found = [(name, "enable") for name, bit in disabled.items() if model.opt.disableflags & bit]
+    overrides = model.opt.enableflags & on.mjENBL_OVERRIDE
+    return (*found, *([("override", "disable")] if overrides else []))
 
 
 def _undone(model: mujoco.MjModel) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.shown import Shown
+from mujoco_models.inspect.drive import Reach
 from mujoco_models.inspect.hand import Hand
 from mujoco_models.motion import ConeKind, IntegratorKind
 
@@ -103,6 +104,11 @@ class MeasuredBeam(Shown):
         What bends it: ``"joints"``, ``"plugin"`` or ``"flex"``.
     drive : str or None
         What can move the foot; None if nothing can.
+    reach : Reach or None
+        What limits a slide that moves the foot; None of another drive.
+    switched : tuple of (str, str)
+        Attributes of `<flag>` by which contacts or drives do not act as they are stated, and what
+        they would have to be.
     objects : tuple of str
         Other bodies that touch and can be moved.
     hand : Hand or None
@@ -159,9 +165,11 @@ class MeasuredBeam(Shown):
     cone : str
         Of friction.
     friction_loss : float
-        The largest of a joint.
+        The largest moment by which friction holds a joint as fast as it turns in a sweep.
     limits : tuple of float
         The smallest turn at which a joint of the vibrissa is limited [rad]; empty without any.
+    limit_stiffness : float
+        Moment over turn past such a limit.
     """
 
     model: str
@@ -171,6 +179,8 @@ class MeasuredBeam(Shown):
     frame: Floats
     springs: Literal["joints", "plugin", "flex"]
     drive: str | None
+    reach: Reach | None
+    switched: tuple[tuple[str, str], ...]
     objects: tuple[str, ...]
     hand: Hand | None
     length: float
@@ -203,6 +213,7 @@ class MeasuredBeam(Shown):
     cone: ConeKind
     friction_loss: float
     limits: tuple[float, ...]
+    limit_stiffness: float
 
     @property
     def natural_curvature(self) -> float:

@@ -221,10 +221,17 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
 
 
 def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
-    """The geoms of a body, but for those that are only seen beside others that collide."""
+    """The geoms of a body, but for those that are only seen.
+
+    These are beside others that collide, or, if none does, beside others that are slender.
+    """
     geoms = np.flatnonzero(model.body_weldid[model.geom_bodyid] == body)
     collide = (model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)
-    return [int(geom) for geom in (geoms[collide] if collide.any() else geoms)]
+    slender = np.isin(model.geom_type[geoms], _SLENDER)
+    for mine in (collide, slender):
+        if mine.any():
+            return [int(geom) for geom in geoms[mine]]
+    return [int(geom) for geom in geoms]
 
 
 def _geoms(model: mujoco.MjModel, text: str) -> list[int]:

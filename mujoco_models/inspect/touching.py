@@ -80,7 +80,8 @@ def _geom(
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
     start, end = sorted(((piece.ends - clamp) @ axes[1]).tolist())
     stiffness, time_constant = _stiffness(model, stated("solref"), stated("solimp"), weight)
-    none_does = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    none_does = model.opt.disableflags & int(off)
     return Geom(
         name=piece.name,
         number=piece.number,

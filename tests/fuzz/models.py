@@ -2,13 +2,14 @@
 
 Each is a vibrissa as others write one (hinges, pairs of hinges, balls, with frames between links,
 MuJoCo 4's flex or MuJoCo 3's cable, on a mocap body, a slide, a weld, a wrist or a mesh, in units
-from um to m and from mg to kg), written badly in up to three of the ways of `MISTAKES`; or, one in
-four, such a one, a URDF or a shipped chain, flex or cable, in
-which some numbers are others, or a tendon or a constraint was added. A line a model says what was
-planted, and as flags:
+from um to m and from mg to kg), written badly in up to three of the ways of `MISTAKES` and
+otherwise in up to four of `tests.fuzz.ways`; or, one in four, such a one, a URDF or a shipped
+chain, flex or cable, in which some numbers are others, or something was added. A line a model says
+what was planted, and as flags:
 
 - ``internal``: anything but a line of an `InputError`;
 - ``missed``: a planted mistake that no fault names;
+- ``false``: a fault of a model in which none is planted;
 - ``left``: fixed, faults of that kind are still there;
 - ``outside``: swept as fixed, it is outside of the expected interval.
 
@@ -30,11 +31,12 @@ from rich.console import Console
 from analytic import InputError, solve_sweep
 from compare import compare
 from compare.read.case import load_case
-from compare.simulate.expected import expected
-from compare.simulate.fixing import SPEED, case_of, fix
+from compare.simulate.expected import SPEED, expected
+from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from mujoco_models import available_beams, inspect_model, shipped_models, simulate_model
 from tests.compare.simulate.published import cable
+from tests.fuzz.ways import WAYS, rewritten
 from tests.mujoco_models.inspect.rods import Rod
 
 FAULTY = 0.05  # of the swept; the interval is one of 95 per cent
@@ -55,15 +57,19 @@ class Model:
     odd: int = 0  # a link that is too stiff
     timestep: float = 0.01  # T1
     integrator: str = "discrete"
-    gravity: str = "0 0 0"
+    weight: float = 0.0  # by which gravity pulls the vibrissa aside [EI/L^2]
     damping: float = 0.0159  # T1 times the stiffness: a twentieth of critical
     contact: str = 'condim="1" solimp="0.98 0.98 0.001"'
     solref: float = 2.0  # time steps
     site: str = ""
     limit: str = ""
-    loss: str = ""
+    loss: float = 0.0  # friction of a joint [EI/L]
+    flag: str = ""
+    rail: str = ""  # of the slide
+    motor: str = ""
     sensors: tuple[str, ...] = ("force", "torque")
     planted: list[str] = field(default_factory=list)
+    ways: list[str] = field(default_factory=list)  # of writing it
     soft: str = ""  # a flex or a cable, as MJCF
 
     @property
@@ -75,8 +81,13 @@ class Model:
         """As MJCF."""
         if self.soft:
             return self.soft
-        held = f"{self.limit} {self.loss}"
         h, t1 = self.length / self.links, self.period
+        # As hard in any unit of time; MuJoCo's defaults are so soft that they hold little.
+        loss = f'frictionloss="{self.loss * self.rigidity / self.length:.8g}"'
+        loss = f'{loss} solreffriction="-1 {-1e5 / t1:.8g}"' if self.loss else ""
+        hard = f'solreflimit="{-3e4 / t1**2:.8g} {-300 / t1:.8g}"' if self.limit else ""
+        held = f"{self.limit} {hard} {loss}"
+        pull = self.weight * self.rigidity / (self.mass * self.length**2)
         count = self.links if self.lead < 1 else self.links - 1
         bodies, weight = "", self.mass / self.links
         frame = "<body>" if self.joints == "framed" else ""
@@ -105,7 +116,7 @@ class Model:
         return (
             f'<mujoco model="foreign">\n<compiler angle="radian" boundinertia="1.1e-15"/>\n'
             f'<option timestep="{self.timestep * t1:.8g}" integrator="{self.integrator}" '
-            f'gravity="{self.gravity}"/>\n<default><geom type="capsule" '
+            f'gravity="{pull:.8g} 0 0"><flag {self.flag}/></option>\n<default><geom type="capsule" '
             f'size="{0.005 * self.length:.8g}" {self.contact} '
             f'solref="{self.solref * self.timestep * t1:.8g} 1"/></default>\n'
             f"<worldbody>{self._carried(inside)}</worldbody>\n<sensor>{sensors}</sensor>\n"
@@ -114,7 +125,9 @@ class Model:
 
     def _carried(self, inside: str) -> str:
         inertia, length = 1e6 * self.mass, self.length
-        slide = f'<joint name="rail" type="slide" axis="1 0 0" armature="{inertia:.8g}"/>'
+        slide = (
+            f'<joint name="rail" type="slide" axis="1 0 0" armature="{inertia:.8g}" {self.rail}/>'
+        )
         moments = _thrice(self.mass * length**2)
         weight = f'<inertial pos="0 0 0" mass="{self.mass}" diaginertia="{moments}"/>'
         wrist = f'<joint name="wrist" axis="0 0 1" stiffness="{5e3 * self.rigidity / length:.8g}"/>'
@@ -133,7 +146,7 @@ class Model:
 
     def _beside(self) -> str:
         gain = 1e8 * self.mass / self.period
-        motor = f'<velocity joint="rail" kv="{gain:.8g}"/>'
+        motor = f'<velocity joint="rail" kv="{gain:.8g}" {self.motor}/>'
         a = 0.05 * self.length
         corners = f"0 0 0 {a} 0 0 0 {-a} 0 0 0 {a}"
         return {
@@ -199,11 +212,21 @@ MISTAKES: dict[str, Callable[[Model], None]] = {
     "time step, long": _changed(timestep=0.2),
     "time step, explicit": _changed(integrator="Euler"),
     "limits": _changed(limit='limited="true" range="-0.01 0.01"'),
-    "friction in joints": _changed(loss='frictionloss="1e-3"'),
+    "friction in joints": _changed(loss=0.3),
     "damping": _changed(damping=0.8),
     "force sensor, turned": _changed(site='euler="0 0 0.2"'),
     "force sensor, none": _changed(sensors=()),
-    "foot": _changed(carrier="fixed"),
+    "gravity": _changed(weight=0.1),
+    "flags, override": _changed(flag='override="enable"'),
+    "flags, constraint": _changed(flag='constraint="disable"'),
+    "foot, range": _changed(rail='limited="true" range="-1e-9 1e-9"'),
+    "foot, weak": _changed(motor='forcelimited="true" forcerange="-1e-20 1e-20"'),
+    "foot, none": _changed(carrier="fixed"),
+}
+_ALL = ("motor", "slide", "mocap", "servo", "mesh", "weld")
+_CARRIERS = {  # that have what a mistake changes
+    "foot, range": ("motor", "slide", "servo", "mesh"),
+    "foot, weak": ("motor", "servo", "mesh"),
 }
 UNITS = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6}  # of a whisker of 0.1 m
 MASSES = {"kg": 1.0, "g": 1e3, "mg": 1e6}
@@ -222,9 +245,14 @@ def drawn(rng: random.Random) -> Model:
         carrier=rng.choice(["motor", "motor", "slide", "mocap", "servo", "mesh", "weld"]),
     )
     for name in rng.sample([*MISTAKES], rng.randint(0, 3)):
-        if model.joints != "ball" or name not in ("limits", "friction in joints"):
+        if model.carrier in _CARRIERS.get(name, _ALL) and not (
+            model.joints == "ball" and name in ("limits", "friction in joints")
+        ):
             MISTAKES[name](model)
             model.planted.append(name)
+    model.ways = rng.sample([*WAYS], rng.randint(0, 4))
+    if model.carrier == "fixed" and "with a ball" in model.ways:
+        model.ways.remove("with a ball")  # as it would be the object that moves
     return model
 
 
@@ -246,6 +274,7 @@ class Outcome:
     model: Model
     said: str = ""
     flags: list[str] = field(default_factory=list)
+    swept: bool = False
 
 
 def garbled(rng: random.Random) -> str:
@@ -262,8 +291,9 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
     """Inspect and fix one; sweep it as fixed."""
     outcome = Outcome(drawn_soft(rng) if rng.random() < _SOFT else drawn(rng))
     path = folder / "foreign.xml"
-    path.write_text(outcome.model.text())
-    if not sweep and rng.random() < _GARBLED:
+    path.write_text(rewritten(outcome.model.text(), outcome.model.ways, folder, rng))
+    garbled_too = not sweep and rng.random() < _GARBLED
+    if garbled_too:
         outcome.model.planted = []
         path.write_text(garbled(rng))
         if rng.random() < _GARBLED:
@@ -276,6 +306,8 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
         outcome.said = f"{sorted(found)}"
         if planted - found - _hidden(outcome.model):
             outcome.flags.append(f"missed {sorted(planted - found)}")
+        if not garbled_too and not planted and found - _own(outcome.model):
+            outcome.flags.append(f"false {sorted(found)}")
         after = fix(path, {}, before, path.with_name("fixed.xml"))
         left = {fault.subject for fault in after.inspection.faults}
         outcome.said += f" -> {sorted(left)}"
@@ -300,7 +332,14 @@ def _hidden(model: Model) -> set[str]:
         hidden |= {"damping", "uniformity"}
     if model.carrier == "weld":
         hidden |= {"force sensor", "foot"}
+    if "flags, constraint" in model.planted:
+        hidden |= {"contact", "time step", "limits", "friction in joints"}
     return hidden
+
+
+def _own(model: Model) -> set[str]:
+    """Faults of a model in which nothing is planted."""
+    return _stays(model) | ({"clamp"} if model.carrier == "weld" else set())
 
 
 def _stays(model: Model) -> set[str]:
@@ -318,6 +357,7 @@ def _sweep(outcome: Outcome, inspection: Inspection, file: Path) -> None:
     worst = max(part.rms for part in parts.values())
     low, high = expected(inspection.found, SPEED).interval
     outcome.said += f" {low:.1e} < {worst:.1e} < {high:.1e}, {(~moved.trusted).sum()} untrusted"
+    outcome.swept = True
     if not low < worst < high:
         outcome.flags.append("outside")
 
@@ -326,19 +366,20 @@ def main(count: int, seed: int, swept: int = 0) -> int:
     """Try some; 1 if something is wrong."""
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"{count} models, seed {seed}")
-    outside = wrong = 0
+    outside = wrong = done = 0
     with tempfile.TemporaryDirectory() as folder:
         for i in range(count):
             outcome = trial(random.Random(f"{seed} {i}"), Path(folder), i < swept)
             outside += "outside" in outcome.flags
+            done += outcome.swept
             wrong += any(flag != "outside" for flag in outcome.flags)
             model = outcome.model
             kind = "of a flex or cable" if model.soft else f"{model.joints} on {model.carrier}"
-            about = f"{model.links} {kind}, L = {model.length:.3g}"
+            about = f"{model.links} {kind}, L = {model.length:.3g}, {', '.join(model.ways)}"
             console.print(f"{i}: {about}, {model.planted} {outcome.said} {outcome.flags or ''}",
                           markup=False)  # fmt: skip
-    console.print(f"{wrong} wrong, {outside} of {swept} outside")
-    return int(wrong > 0 or outside > FAULTY * swept)
+    console.print(f"{wrong} wrong, {outside} of {done} outside")
+    return int(wrong > 0 or outside > FAULTY * done)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""A short run of the random foreign models, and a long one that sweeps them."""
+"""A short run of the random foreign models, and long ones that sweep them."""
 
 import pytest
 
+from tests.fuzz import left_out
 from tests.fuzz.models import main
 
 
@@ -13,3 +14,8 @@ def test_foreign_models_are_inspected_and_fixed():
 @pytest.mark.trial
 def test_fixed_models_sweep_as_was_expected():
     assert main(30, 8, 30) == 0
+
+
+@pytest.mark.trial
+def test_one_fault_that_is_left_is_named_and_matters():
+    assert left_out.main(7, 502) == 0

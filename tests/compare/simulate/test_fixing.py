@@ -2,11 +2,11 @@
 
 import pytest
 
-from analytic import solve_sweep
+from analytic import find_events, solve_sweep
 from compare import compare
 from compare.read.case import load_case
-from compare.simulate.expected import expected
-from compare.simulate.fixing import SPEED, case_of, fix
+from compare.simulate.expected import SPEED, expected
+from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.profile import profile
 from mujoco_models import inspect_model, shipped_models, simulate_model
@@ -86,6 +86,52 @@ def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
     assert faults_in(before) == subjects
     assert after.inspection.sound, after.inspection.remarks
     assert len(after.files) == 1
+
+
+def test_what_can_leave_its_plane_is_swept_until_it_would(tmp_path):
+    """Farther on chains of balls slip off sideways, in most turns of the world: 20 % rms."""
+    path = Chain().write(tmp_path)
+    assert "stop" not in case_of(inspect_model(path), path, {})
+    path.write_text(path.read_text().replace('axis="0 0 1"', 'type="ball"'))
+    before, after = fixed(path)
+    assert before.sound
+    assert "until it would leave its plane" in "".join(after.lines())
+    (tmp_path / "case.toml").write_text(case_of(after.inspection.found, after.files[0], {}))
+    case = load_case(tmp_path / "case.toml").case
+    way = find_events(case.profile, case.beam)
+    # It stops at the last of 200 stations before that.
+    assert case.foot_x[-1] == pytest.approx(way.out_of_plane.foot_x, abs=0.02)
+    assert way.snap_off.foot_x < way.out_of_plane.foot_x < case.foot_x[-1]
+
+
+OPTION = '<option timestep="0.01"'
+MOTOR_ALONE = '<velocity joint="rail"'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "subject"),
+    [
+        (OPTION, f'<option><flag constraint="disable"/></option>{OPTION}', "flags"),
+        (OPTION, f'<option><flag actuation="disable"/></option>{OPTION}', "flags"),
+        (OPTION, f'<option o_solref="0.5 1"><flag override="enable"/></option>{OPTION}', "flags"),
+        ('name="rail"', 'name="rail" range="-0.5 0.5"', "foot"),
+        (MOTOR_ALONE, f'{MOTOR_ALONE} ctrlrange="-0.01 0.01"', "foot"),
+        (MOTOR_ALONE, f'{MOTOR_ALONE} forcerange="-1 1"', "foot"),
+    ],
+)
+def test_what_stops_contacts_or_the_drive_is_switched_off(tmp_path, old, new, subject):
+    """Swept as they are, they are 26 and 52 % off, or their foot stays behind."""
+    before, after = fixed(on_rail(tmp_path, (old, new)))
+    assert faults_in(before) == {subject}
+    assert after.inspection.sound
+
+
+def test_a_drive_that_reaches_as_far_as_a_sweep_is_no_fault(tmp_path):
+    """Its limits are those on the way to the left alone."""
+    limits = 'forcerange="-9 9" ctrlrange="-0.06 0.01"'
+    path = on_rail(tmp_path, ('name="rail"', 'name="rail" range="-2.1 0.1"'),
+                   (MOTOR_ALONE, f"{MOTOR_ALONE} {limits}"))  # fmt: skip
+    assert Inspection(inspect_model(path)).sound
 
 
 def test_what_was_meant_is_no_fault(tmp_path):

@@ -6,8 +6,8 @@ import pytest
 
 from analytic import CLAMP_READINGS, Beam, solve_sweep
 from compare.read.case import load_case
-from compare.simulate.expected import expected
-from compare.simulate.fixing import SPEED, case_of, fix
+from compare.simulate.expected import SPEED, expected
+from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from mujoco_models import available_beams, inspect_model, simulate_model
 from tests.compare.simulate.faults import faults_in

@@ -127,9 +127,10 @@ def changed(tmp_path, chain, *changes):
     return Inspection(inspect_model(path), STATED)
 
 
-def test_disabled_contacts_meet_nothing(tmp_path):
+def test_disabled_contacts_are_named(tmp_path):
     found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
-    assert any("21 of 21 geoms" in str(fault) for fault in found.faults)
+    assert {fault.subject for fault in found.faults} >= {"flags"}
+    assert not any("21 of 21 geoms" in str(fault) for fault in found.faults)
 
 
 def test_what_is_only_seen_is_no_part_of_it(tmp_path):
@@ -247,3 +248,22 @@ def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
     assert faults_in(before) == {"clamp"}
     assert after.sound, after.remarks
     assert after.found.length == pytest.approx(0.1 * (1 - 1 / 40), rel=1e-3)
+
+
+LIMIT = 'limited="true" range="-0.01 0.01" solreflimit="{} 1"'
+LOSS = 'frictionloss="0.1" solreffriction="-1 {}"'
+
+
+@pytest.mark.parametrize(
+    ("given", "subject", "named"),
+    [
+        (LIMIT.format(0.05), "limits", False),  # swept, it moves readings by 0.2 %
+        (LIMIT.format(0.02), "limits", True),  # by 1.4 %
+        (LOSS.format("-1e3"), "friction in joints", False),  # by 0.4 %
+        (LOSS.format("-1e5"), "friction in joints", True),  # by 2.1 %
+    ],
+)
+def test_limits_and_friction_matter_as_far_as_they_hold(tmp_path, given, subject, named):
+    """MuJoCo's are soft: by how much, their solref says, in the model's own unit of time."""
+    found = changed(tmp_path, Chain(), ("<joint ", f"<joint {given} "))
+    assert (subject in {fault.subject for fault in found.faults}) is named

@@ -55,6 +55,13 @@ def changed(old, new):
     return [line for line in lines if line[0] in "+-"]
 
 
+def test_a_flag_is_set_where_it_is_stated_last(path):
+    flags = '<option><flag override="enable"/></option><option><flag energy="enable"/></option>'
+    path.write_text(MAIN.replace("<default>", f"{flags}<default>", 1))
+    model, _ = write(path, Edit("flag", (("override", "disable"),), (0,)))
+    assert model.opt.enableflags == mujoco.mjtEnableBit.mjENBL_ENERGY
+
+
 def test_an_option_is_set_where_it_stands(path):
     model, files = write(path, Edit("option", (("timestep", "0.001"), ("integrator", "discrete"))))
     assert model.opt.timestep == 0.001

@@ -256,6 +256,54 @@ def test_what_is_coupled_held_or_turned_is_no_beam(tmp_path, chain, old, new, sa
     assert "\n" not in str(caught.value)
 
 
+ROPE = '<tendon><spatial name="t">PATH</spatial></tendon>'
+
+
+@pytest.mark.parametrize(
+    "tendon",
+    [
+        '<tendon><spatial stiffness="50">PATH</spatial></tendon>',
+        '<tendon><spatial range="0.95 1.1">PATH</spatial></tendon>',
+        f'{ROPE}<equality><tendon tendon1="t"/></equality>',
+        f'{ROPE}<actuator><motor tendon="t"/></actuator>',
+    ],
+)
+def test_a_tendon_that_holds_it_is_named(tmp_path, tendon):
+    path = Chain(tip='/><site name="tip" pos="0 0.02 0"').write(tmp_path)
+    text = path.read_text()
+    rope = tendon.replace("PATH", '<site site="clamp"/><site site="tip"/>')
+    path.write_text(text.replace("</mujoco>", f"{rope}</mujoco>"))
+    with pytest.raises(InputError, match="body 'whisker20' of the vibrissa = held by a tendon"):
+        inspect_model(path)
+    measures = rope.split("<equality>")[0].split("<actuator>")[0]
+    for acts in ('stiffness="50"', 'range="0.95 1.1"'):
+        measures = measures.replace(acts, "")
+    path.write_text(text.replace("</mujoco>", f"{measures}</mujoco>"))
+    assert inspect_model(path).tip_rigidity == pytest.approx(1, rel=1e-3)
+
+
+def test_a_link_that_bends_in_another_plane_alone_is_named(tmp_path):
+    """As those of tails of animals: MuJoCo's suite has dogs and rodents with such."""
+    path = Chain().write(tmp_path)
+    one, other = (f'pos="0 0.05 0"><joint axis="{axis}"' for axis in ("0 0 1", "1 0 0"))
+    path.write_text(path.read_text().replace(one, other, 3))
+    with pytest.raises(InputError, match=r"'whisker2' .* = without a bend in the plane") as said:
+        inspect_model(path)
+    assert "\n" not in str(said.value)
+
+
+@pytest.mark.parametrize("touches", ["", 'contype="0" conaffinity="0"'])
+def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
+    """Balls on capsules, whether these touch or nothing does."""
+    seen = '<geom type="sphere" size="0.03" pos="0 0.05 0.1" contype="0" conaffinity="0" mass="0"/>'
+    path = Chain().write(tmp_path)
+    text = path.read_text().replace('condim="1"', f'condim="1" {touches}')
+    path.write_text(text.replace("<joint axis", f"{seen}<joint axis"))
+    found = inspect_model(path)
+    assert [geom.radius for geom in found.geoms] == [0.005] * 21
+    assert found.length == pytest.approx(1)
+
+
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
     found = measured(tmp_path, both, foot="whisker-foot")

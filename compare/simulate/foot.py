@@ -1,0 +1,71 @@
+"""What there is to say of a model's foot: its drive, and what lies between that and the clamp."""
+
+from collections.abc import Iterator
+
+from compare.simulate.expected import SPEED
+from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
+from compare.simulate.rigidity import as_intended
+from compare.simulate.treatment import held, on_rail
+from mujoco_models.fix.edit import Edit
+from mujoco_models.inspect.measured import MeasuredBeam
+
+_WAY = 2.0  # L; of the foot, from first touch to release
+
+
+def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
+    """What moves it, and what lies between that and the vibrissa."""
+    yield from _hand(found)
+    yield from _reach(found)
+    if found.drive is None and found.objects:
+        shown = ", ".join(map(repr, found.objects[:4]))
+        yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
+    elif found.drive is None:
+        yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "make it a mocap body, "
+                     "or give it a slide joint across the vibrissa", on_rail(found))  # fmt: skip
+    elif "which is a force" in found.drive:
+        yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
+                     "its speed")  # fmt: skip
+    elif "mocap" in found.drive:
+        yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
+                     "contacts do not see it move: on the far side of an object contacts chatter. "
+                     "A slide joint with a velocity actuator has one")  # fmt: skip
+
+
+def _hand(found: MeasuredBeam) -> Iterator[Remark]:
+    hand, rigidity, length = found.hand, as_intended(found), found.length
+    if hand is None:
+        return
+    gives = FORCE * rigidity / length**3 * hand.displacement
+    softer = 3 * rigidity / length * hand.rotation
+    if gives > SINKS or softer > RIGIDITY:
+        through = ", ".join(map(repr, hand.joints[:4]))
+        where = "the weld of " if hand.welds else ""
+        turns = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > 0 else ""
+        yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
+                     f": it {turns}moves by {gives:.1e} L under {FORCE:g} EI/L^2",
+                     edits=held(found))  # fmt: skip
+
+
+def _reach(found: MeasuredBeam) -> Iterator[Remark]:
+    """What stops a drive before a sweep is over."""
+    reach, length = found.reach, found.length
+    if reach is None:
+        return
+    own = () if reach.actuator is None else (reach.actuator,)
+    if reach.way < _WAY * length:
+        yield Remark("fault", "foot", f"its slide ends {reach.way / length:.2g} L to the left, a "
+                     f"sweep takes up to {_WAY:g} L",
+                     edits=(Edit("joint", (("limited", "false"),), (reach.joint,)),))  # fmt: skip
+    if reach.follows is False:
+        yield Remark("fault", "foot", "its actuator has an activation of its own, and does not "
+                     "follow what it is given",
+                     "take <velocity> or <position> without dyntype")  # fmt: skip
+    slow = reach.speed < SPEED * length / found.period
+    if slow or reach.placed < _WAY * length:
+        yield Remark("fault", "foot", "its actuator's ctrlrange ends before a sweep at "
+                     f"{SPEED} L/T1 does",
+                     edits=(Edit("actuator", (("ctrllimited", "false"),), own),))  # fmt: skip
+    if reach.force < FORCE * as_intended(found) / length**2:
+        yield Remark("fault", "foot", f"its actuator's forcerange of {reach.force:.3g} is less "
+                     f"than the {FORCE:g} EI/L^2 of a sweep",
+                     edits=(Edit("actuator", (("forcelimited", "false"),), own),))  # fmt: skip

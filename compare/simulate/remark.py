@@ -1,0 +1,30 @@
+"""A line on a model, and what is too much of more than one subject."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from mujoco_models.fix.edit import Edit, Insert
+
+# Each moves a reading by about one per cent of its largest magnitude.
+RIGIDITY = 0.01
+"""Relative; forces and moments are proportional to EI."""
+SINKS = 2e-3
+"""Depth of a contact [L]."""
+FORCE = 3.0
+"""The largest of a usual sweep [EI/L^2]."""
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A line on a model."""
+
+    # A ``"fault"`` moves readings by about a per cent or more; a ``"note"`` is good to know.
+    kind: Literal["fault", "note"]
+    subject: str  # as ``"clamp"``
+    text: str  # in a sentence
+    remedy: str = ""  # what to do, beside edits
+    edits: tuple[Edit | Insert, ...] = ()  # that fix it
+
+    def __str__(self) -> str:
+        said = [self.remedy, *(f"set {edit}" for edit in self.edits if f"{edit}")]
+        return "; ".join(filter(None, (f"{self.kind}, {self.subject}: {self.text}", *said)))

@@ -1,0 +1,82 @@
+"""What holds a user's vibrissa beside its springs: constraints, tendons, limits and friction."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Integers
+from analytic.problem.errors import InputError
+from mujoco_models.inspect.drive import bodies_of_constraint
+from mujoco_models.inspect.parts import Parts
+
+_PAST = 0.05  # rad; by which a joint is past its limit in a sweep
+
+
+def check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
+    """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
+    for i in np.flatnonzero(model.eq_active0).tolist():
+        bodies = model.body_weldid[bodies_of_constraint(model, i)].tolist()
+        for body in set(bodies).intersection(parts.chain):
+            raise InputError(
+                f"body {model.body(body).name!r} of the vibrissa",
+                "held by an equality constraint", "one that springs alone hold",
+                "remove the constraint, or set active=\"false\"",
+            )  # fmt: skip
+
+
+def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
+    """Raise InputError where a tendon holds the vibrissa beside its springs.
+
+    But for a spring on joints, which is one of theirs.
+    """
+    driven = model.actuator_trnid[model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON, 0]
+    coupled = (model.eq_type == mujoco.mjtEq.mjEQ_TENDON) & model.eq_active0
+    ends = np.concatenate([model.eq_obj1id[coupled], model.eq_obj2id[coupled]])
+    for tendon in range(model.ntendon):
+        wraps = model.tendon_adr[tendon] + np.arange(model.tendon_num[tendon])
+        kinds, numbers = model.wrap_type[wraps], model.wrap_objid[wraps]
+        on_joints = kinds[0] == mujoco.mjtWrap.mjWRAP_JOINT
+        bodies = (
+            model.jnt_bodyid[numbers] if on_joints
+            else model.site_bodyid[numbers[kinds == mujoco.mjtWrap.mjWRAP_SITE]]
+        )  # fmt: skip
+        springy = model.tendon_stiffness[tendon] != 0 and not on_joints
+        holds = springy or model.tendon_limited[tendon] or model.tendon_frictionloss[tendon] > 0
+        mine = set(model.body_weldid[bodies].tolist()).intersection(parts.chain)
+        if mine and (holds or tendon in driven or tendon in ends):
+            raise InputError(
+                f"body {model.body(min(mine)).name!r} of the vibrissa", "held by a tendon",
+                "one that springs alone hold",
+                f"take tendon {model.tendon(tendon).name!r} away, or its stiffness and limits",
+            )  # fmt: skip
+
+
+def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:
+    """The moment by which friction holds a joint that turns at a rate: the median of them.
+
+    MuJoCo's friction of joints is a damper whose moment has a bound, `frictionloss`; how strong it
+    is goes with solreffriction, in the model's own unit of time.
+    """
+    if not model.dof_frictionloss[dofs].any():
+        return 0.0
+    data = mujoco.MjData(model)
+    data.qvel[dofs] = rate
+    mujoco.mj_forward(model, data)
+    rubs = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
+    mine = rubs & np.isin(data.efc_id, dofs)
+    held = np.abs(data.efc_D * data.efc_aref)[mine]
+    most = data.efc_frictionloss[mine]
+    return float(np.median(np.minimum(held, most))) if mine.any() else 0.0
+
+
+def limit_stiffness(model: mujoco.MjModel, parts: Parts) -> float:
+    """Of the limits of its hinges, as soft as solreflimit makes them: the median of them."""
+    mine = np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1)
+    hinges = np.flatnonzero(mine & (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE))
+    if not hinges.size:
+        return 0.0
+    data = mujoco.MjData(model)
+    data.qpos[model.jnt_qposadr[hinges]] = model.jnt_range[hinges, 1] + _PAST
+    mujoco.mj_forward(model, data)
+    ends = data.efc_type == mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT
+    ends &= np.isin(data.efc_id, hinges)
+    return float(np.median((data.efc_D * data.efc_aref)[ends])) / _PAST if ends.any() else 0.0
