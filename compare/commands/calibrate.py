@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.kinds import A_RIG, For, no_rigs, pass_files, require_use
+from compare.commands.kinds import A_RIG, For, from_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -17,7 +17,7 @@ from compare.commands.options import (
     out_folder,
     words,
 )
-from compare.commands.output import distinct_name, output_folder, waiting
+from compare.commands.output import check_own, distinct_name, output_folder, waiting
 
 KNOWN = "a sweep past a known object"
 
@@ -54,31 +54,36 @@ def calibrate(
     """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Several passes
-    are pooled. Exit code 1: the fit leaves more than the noise, or passes do not say the same.
+    are pooled. What is found is written as a case, too: DIR/case.toml. Exit code 1: the fit leaves more than the noise, or passes do not say the same.
     """
     level = number_or_auto("--noise", noise)
     first, files = files[0], pass_files(files)
-    require_use(context, KNOWN, *([] if no_rigs(files) and not column else [A_RIG]))
+    require_use(context, KNOWN, *([A_RIG] if from_rigs(files) or column else []))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal
     from compare.commands.sweep_lines import note_rows
-    from compare.read.case import load_job
-    from compare.read.rig import read_measured
+    from compare.read.case import case_tables, load_job
+    from compare.commands.comparing import RigFiles
     from compare.sense.record import without_dropouts
+    from compare.show.case_file import CASE_MARK, calibrated_case
     from compare.show.fits import calibration_document, calibration_summary
 
     known = load_job(case).case
-    passes = [
-        without_dropouts(read_measured(file, None, column or (), known.beam, direction))
-        for file in files
-    ]
+    rig = RigFiles(column or (), None, direction, "world")
+    passes = [without_dropouts(one) for one in rig.read_all(files, known.beam)]
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(passes, level)
         found = calibrate_case(passes, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(first)}-calibrated") as folder:
+        check_own(folder / "case.toml", CASE_MARK)
         for one in passes:
             note_rows(one)
         terminal.show(*calibration_summary(found))
         terminal.keep(folder / "calibration.json", calibration_document(found))
+        text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
+        terminal.keep(folder / "case.toml", text)
+        shift = f" --offset {found.offset:.4g}" if found.offset else ""
+        made = folder / "case.toml"
+        terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
     return AGREES if found.explains else DISAGREES

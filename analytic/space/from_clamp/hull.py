@@ -224,7 +224,7 @@ def _flat() -> InputError:
         "contacts",
         "in one line or plane, within noise",
         "of a body with a volume",
-        "sweep along other lines past it, too; with noise fit a sphere, ellipsoid or cylinder",
+        "give several sweeps along different lines past it, or fit a sphere, ellipsoid or cylinder",
     )
 
 
