@@ -36,7 +36,7 @@ def calibrate(
         str,
         option(
             "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, "
-            "tip_radius, friction, offset (of foot_x).",
+            "tip_radius, friction, offset (of foot_x), lag (of the readings behind it).",
             "A,B,...",
         ),
     ] = "flexural_rigidity",
@@ -54,13 +54,15 @@ def calibrate(
     """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Several passes
-    are pooled. What is found is written as a case, too: DIR/case.toml. Exit code 1: the fit leaves more than the noise, or passes do not say the same.
+    are pooled. What is found becomes a case, too, DIR/case.toml. Exit code 1: the fit leaves more
+    than the noise, or passes do not say the same.
     """
     level = number_or_auto("--noise", noise)
     first, files = files[0], pass_files(files)
     require_use(context, KNOWN, *([A_RIG] if from_rigs(files) or column else []))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
+    from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
     from compare.commands.sweep_lines import note_rows
     from compare.read.case import case_tables, load_job
@@ -68,6 +70,7 @@ def calibrate(
     from compare.sense.record import without_dropouts
     from compare.show.case_file import CASE_MARK, calibrated_case
     from compare.show.fits import calibration_document, calibration_summary
+    from compare.show.lag import lag_remembered
 
     known = load_job(case).case
     rig = RigFiles(column or (), None, direction, "world")
@@ -79,11 +82,16 @@ def calibrate(
         check_own(folder / "case.toml", CASE_MARK)
         for one in passes:
             note_rows(one)
+        if LAG not in found.found and (said := lag_remembered(passes)) is not None:
+            terminal.print_line(f"{said}: fit lag too")
         terminal.show(*calibration_summary(found))
         terminal.keep(folder / "calibration.json", calibration_document(found))
         text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
         terminal.keep(folder / "case.toml", text)
-        shift = f" --offset {found.offset:.4g}" if found.offset else ""
+        known = found.found.get("offset")
+        shift = ""
+        if known is not None and not known.lowest <= 0 <= known.highest:
+            shift = f" --offset {known.value:.4g}"
         made = folder / "case.toml"
         terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
     return AGREES if found.explains else DISAGREES

@@ -1,7 +1,7 @@
 """The passes in the files of a rig: calibrated, without defects, their zero taken off."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -117,6 +117,10 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
         numbers = as_numbers(column, said.column, table.place)
         zero = 0.0 if name in CLAMP_READINGS else said.zero
         found[name] = said.scale(name) * (numbers - zero)
+    clock = rig.columns.time
+    if clock is not None:
+        column = cells(table.frame, clock.column, path, "fix [columns]")
+        found["time"] = clock.scale("time") * as_numbers(column, clock.column, table.place)
     return pd.DataFrame(found)
 
 
@@ -130,6 +134,10 @@ def _groups(table: RawTable, rig: Rig, path: Path) -> Floats:
 
 
 def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
+    late = rig.passes.lag if direction == "right" else -rig.passes.lag
+    speed = _speed(raw)
+    there = raw.table.drop(columns="time", errors="ignore")
+    raw = replace(raw, table=there.assign(foot_x=there["foot_x"] - late))
     record, counts = inspect_record(raw), raw.provenance.get("rows", {})
     dropped = {
         "without_foot_x": int(raw.provenance.get("rows_without_foot_x", 0)),
@@ -160,6 +168,8 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         fault = error
     table = raw.table.assign(**_by_reading(values))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
+    if speed is not None:
+        provenance["speed"] = speed
     if np.isfinite(zero.uncertainty).all():
         provenance["zero_uncertainty"] = _by_reading(zero.uncertainty.tolist())
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
@@ -179,6 +189,16 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         free,
         fault,
     )
+
+
+def _speed(raw: Readings) -> float | None:
+    """Of the foot, in the median of the pass; None if no column has the time."""
+    if "time" not in raw.table:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speeds = np.abs(np.diff(raw.values("foot_x")) / np.diff(raw.values("time")))
+    known = speeds[np.isfinite(speeds) & (speeds > 0)]
+    return float(np.median(known)) if len(known) else None
 
 
 def _by_reading(values: Iterable[Any]) -> dict[str, Any]:

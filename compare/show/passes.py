@@ -1,11 +1,13 @@
 """The passes of a rig: what was kept, what was dropped, how far they repeat."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from analytic import CLAMP_READINGS
+from analytic.from_clamp.object.lag import Lag
 from analytic.from_clamp.passes import Consistency
 from compare.measure.repeats import Repeats
 from compare.read.passes import Pass
@@ -63,7 +65,9 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
     )
 
 
-def passes_document(passes: Sequence[Pass], found: Sequence[Repeats]) -> dict[str, Any]:
+def passes_document(
+    passes: Sequence[Pass], found: Sequence[Repeats], lag: Lag | None
+) -> dict[str, Any]:
     """What ``passes.json`` holds."""
     said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift")
     return {
@@ -75,6 +79,7 @@ def passes_document(passes: Sequence[Pass], found: Sequence[Repeats]) -> dict[st
             }
             for one in passes
         ],
+        "lag": lag and asdict(lag),
         "repeats": [
             {
                 "passes": list(repeated.names),
