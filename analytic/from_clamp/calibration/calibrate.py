@@ -37,6 +37,7 @@ _ENOUGH = 4000  # stations of which a fit is sought
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
 _ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
+_NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
 
@@ -324,12 +325,16 @@ def _knowing_the_noise(
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
     measured = fit.measured
-    nuisances = fit.whitening
-    if len(measured.rows) > 1:
-        along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
-        nuisances = np.concatenate([nuisances, along[:, None, None] * nuisances], axis=2)
+    shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
+    along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
+    if len(measured.rows) > 1 or measured.bend.any():
+        shapes, uncertain = [*shapes, along], [measured.zero, measured.zero]
+    if measured.bend.any():
+        shapes = [*shapes, 1 - along**2]
+        uncertain = [*uncertain, np.maximum(measured.bend, _NO_BEND * measured.zero)]
+    nuisances = np.concatenate([x[:, None, None] * fit.whitening for x in shapes], axis=2)
     shared = [i for i, kind in enumerate(fit.kinds) if kind.name == LAG]  # one pass shows none
-    uncertain = np.tile(measured.zero, nuisances.shape[2] // len(CLAMP_READINGS))
+    known = np.concatenate(uncertain)
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
         for kind, column in zip(fit.kinds, jacobian.T, strict=True):
@@ -339,7 +344,7 @@ def _knowing_the_noise(
         by_number = jacobian.reshape(-1, len(CLAMP_READINGS), len(numbers))
         left = -fit.misses(numbers).reshape(-1, len(CLAMP_READINGS))
         found = estimate(
-            left, by_number, nuisances, uncertain, least, rows=measured.rows, shared=shared
+            left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
         )
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)

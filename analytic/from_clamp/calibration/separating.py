@@ -99,6 +99,7 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
                 fit.measured.spread,
                 (len(table),),
                 fit.measured.zero,
+                fit.measured.bend,
             )
             yield name, VibrissaFit(measured, replace(changed, sweep=sweep), fit.kinds)
         except (InputError, ArithmeticError, ValueError):
