@@ -119,12 +119,10 @@ def estimate(
     white = np.diag(prior) + gram[:, :1].sum(axis=2) / (least or _NOISELESS) ** 2
     narrowest = _without_nuisances(white, known)[0][:, 0]
     together = _posterior(one_by_one.sum(axis=0), narrowest.sum(axis=0))
-    by_pass = [
-        _alone(*one, together[0], shared) for one in zip(one_by_one, narrowest, strict=True)
-    ]
-    shared, logarithm = _without_nuisances(normal, known)
+    by_pass = [_alone(*one, together[0], shared) for one in zip(one_by_one, narrowest, strict=True)]
+    common, logarithm = _without_nuisances(normal, known)
     unexplained = np.append(-together[0], 1.0)
-    left = unexplained @ shared.sum(axis=0) @ unexplained
+    left = unexplained @ common.sum(axis=0) @ unexplained
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(readings))
     size = sizes[:known]
@@ -204,10 +202,10 @@ def _alone(
     systems: Floats, white: Floats, together: Floats, shared: Sequence[int]
 ) -> tuple[Floats, Floats]:
     """What one pass says, the shared numbers being as all passes say: without a variance."""
-    own = np.delete(np.arange(systems.shape[-1]), shared)
+    own = np.delete(np.arange(systems.shape[-1]), list(shared))
     numbers, covariance = together.copy(), np.zeros((len(together), len(together)))
     moved = systems.copy()
-    moved[..., -1] -= systems[..., shared] @ together[list(shared)]
+    moved[..., -1] -= systems[..., list(shared)] @ together[list(shared)]
     kept = (one[..., own, :][..., own] for one in (moved, white))
     numbers[own[:-1]], covariance[np.ix_(own[:-1], own[:-1])] = _posterior(*kept)
     return numbers, covariance

@@ -64,9 +64,9 @@ def calibrate(
     from analytic import relative_noise
     from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
+    from compare.commands.comparing import RigFiles
     from compare.commands.sweep_lines import note_rows
     from compare.read.case import case_tables, load_job
-    from compare.commands.comparing import RigFiles
     from compare.sense.record import without_dropouts
     from compare.show.case_file import CASE_MARK, calibrated_case
     from compare.show.fits import calibration_document, calibration_summary
@@ -88,10 +88,9 @@ def calibrate(
         terminal.keep(folder / "calibration.json", calibration_document(found))
         text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
         terminal.keep(folder / "case.toml", text)
-        known = found.found.get("offset")
-        shift = ""
-        if known is not None and not known.lowest <= 0 <= known.highest:
-            shift = f" --offset {known.value:.4g}"
+        off, shift = found.found.get("offset"), ""
+        if off is not None and not off.lowest <= 0 <= off.highest:
+            shift = f" --offset {off.value:.4g}"
         made = folder / "case.toml"
         terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
     return AGREES if found.explains else DISAGREES

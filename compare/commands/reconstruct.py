@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import A_RIG, For, from_rigs, pass_files, require_use
+from compare.commands.kinds import A_RIG, For, from_rigs, no_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -90,9 +90,10 @@ def reconstruct(
 
     in_space = [one for one in found if known is not None or is_spatial(one)]
     swept = [one for one in found if one not in in_space]
-    for kind, some in ((SWEEP, swept), (SPACE, in_space)):
-        if some:
-            require_use(context, kind, *([A_RIG] if from_rigs(some) or column else []))
+    if swept:
+        require_use(context, SWEEP, *([A_RIG] if column or from_rigs(swept) else []))
+    if in_space:
+        require_use(context, SPACE, *([A_RIG] if column or not no_rigs(in_space) else []))
     with waiting("loading"):
         from compare.commands import reconstructing
     rig = reconstructing.RigFiles(column or (), beam, direction, frame)

@@ -45,7 +45,9 @@ def rig(
         found = [repeats([one.readings for one in some]) for some in swept_alike(usable(passes))]
         with waiting("looking for a lag"):
             lag = lag_between([one.readings for one in passes])
-        terminal.show(*passes_summary(passes, found), *lag_summary(passes, lag, described.passes.lag))
+        terminal.show(
+            *passes_summary(passes, found), *lag_summary(passes, lag, described.passes.lag)
+        )
         for one in passes:
             readings = one.readings if lag is None else with_lag(one.readings, lag)
             terminal.print_written(readings.write(folder / f"{one.name}.parquet"))

@@ -18,8 +18,8 @@ from analytic.problem.arrays import Booleans, Floats
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 _CLEARLY = 5.0  # standard deviations of a slope of which nothing is taken off
 _BY_CHANCE = 0.01  # probability of slopes that differ so much; less is a drift that bends
-# Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u) over
-# the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
+# Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u)
+# over the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
 _AS_BENT = 3.0
 
 
@@ -159,7 +159,7 @@ def _hermite(share: Floats, bends: Floats) -> Floats:
     inside = np.clip(share, 0.0, 1.0)
     ends = np.array([inside * (1 - inside) ** 2, -(inside**2) * (1 - inside)])
     ends += np.where(share < 0, [share, 0 * share], np.where(share > 1, [0 * share, share - 1], 0))
-    return bends.T @ ends
+    return np.asarray(bends.T @ ends)
 
 
 _WAY = np.linspace(0, 1, 101)

@@ -19,6 +19,7 @@ from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
+
 _MIDDLE = 2.0  # times the root mean square of a bend is at most what it has midway, if lopsided
 
 
@@ -168,7 +169,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     except InputError as error:
         fault = error
     table = raw.table.assign(**_by_reading(values))
-    provenance = {"pass": name, "direction": direction, "dropped": dropped}
+    provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
     if speed is not None:
         provenance["speed"] = speed
     if np.isfinite(zero.uncertainty).all():

@@ -81,9 +81,7 @@ class Measured:
     def at(self, kept: Booleans) -> "Measured":
         """Some of the stations."""
         rows = tuple(int(kept[one].sum()) for one in self.passes)
-        return replace(
-            self, foot_x=self.foot_x[kept], readings=self.readings[:, kept], rows=rows
-        )
+        return replace(self, foot_x=self.foot_x[kept], readings=self.readings[:, kept], rows=rows)
 
 
 def check_size(readings: Readings, case: Case) -> None:

@@ -67,8 +67,10 @@ class Unknown(Number):
     def tried(self, sought: Sought, given: Case, number: float) -> Sought:
         """What is tried, with another such number."""
         value = number * self.unit(given)
+        if self.name == LAG:
+            return replace(sought, lag=value)
         if self.name in OF_THE_FOOT:
-            return replace(sought, **{self.name: value})
+            return replace(sought, offset=value)
         return replace(sought, case=QUANTITIES[self.name].at(sought.case, value))
 
     def value(self, sought: Sought) -> float:
