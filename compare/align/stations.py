@@ -117,7 +117,7 @@ def check_same_beam(
         raise InputError(
             "vibrissae of the two sweeps",
             f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}",
-            "one, in one system of units",
+            "the same, in the same units",
             "state the one that was measured: --beam FILE, as the case's own",
         )
 
