@@ -12,6 +12,7 @@ import pandas as pd
 
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.unknowns import LAG
+from analytic.from_clamp.noise import bend_uncertainty, reading_noise
 from analytic.from_clamp.object.fit_object import families_fitted, late_if_both_ways
 from analytic.from_clamp.passes import as_passes
 from analytic.problem.columns import CLAMP_READINGS, SENSED
@@ -59,7 +60,7 @@ def lag_between(readings: Sequence[Readings]) -> Lag | None:
         _mean_of([one for one in passes if one.runs_right == right]) for right in (False, True)
     ]
     try:
-        fit = families_fitted(means, None, ("flexural_rigidity", LAG))
+        fit = families_fitted(means, _noise_of(means), ("flexural_rigidity", LAG))
         for family in _FAMILIES:
             found = fit(family)
             if found.explains:
@@ -71,6 +72,17 @@ def lag_between(readings: Sequence[Readings]) -> Lag | None:
     rigidity, size = found.found["flexural_rigidity"], passes[0].beam.base_rigidity
     shares = (x / size for x in (rigidity.value, rigidity.lowest, rigidity.highest))
     return Lag(found.found[LAG], Estimate(*shares), family)
+
+
+def _noise_of(means: Sequence[Readings]) -> dict[str, float]:
+    """Noise of the means, and what is left of zeros: of many rows that is more."""
+    sizes = []
+    for one in means:
+        seen = np.array([*reading_noise(one).values()])
+        zero = one.provenance.get("zero_uncertainty", {})
+        known = np.array([float(zero.get(name, 0.0)) for name in CLAMP_READINGS])
+        sizes.append(np.linalg.norm([seen, known, bend_uncertainty(one)], axis=0))
+    return dict(zip(CLAMP_READINGS, np.max(sizes, axis=0).tolist(), strict=True))
 
 
 def _mean_of(passes: Sequence[Readings]) -> Readings:
