@@ -72,6 +72,7 @@ def estimate(
     least: float = 0.0,
     seed: int = 0,
     rows: Sequence[int] | None = None,
+    shared: Sequence[int] = (),
 ) -> Estimated:
     """The numbers that explain readings best, whatever their noise remembers.
 
@@ -81,7 +82,8 @@ def estimate(
     sensor's zero, and `uncertain` (z,) is the standard uncertainty of that. Intervals are no
     narrower than white noise of the standard deviation `least` makes them. `rows` says how many
     stations each pass has, by default all are of one: noise of one pass does not remember that of
-    another, but is of one kind in all.
+    another, but is of one kind in all. Of the numbers that are `shared` a pass alone says nothing:
+    its others are those beside what all passes say of these.
     """
     known = by_number.shape[2]
     rows = [len(readings)] if rows is None else rows
@@ -117,10 +119,10 @@ def estimate(
     white = np.diag(prior) + gram[:, :1].sum(axis=2) / (least or _NOISELESS) ** 2
     narrowest = _without_nuisances(white, known)[0][:, 0]
     together = _posterior(one_by_one.sum(axis=0), narrowest.sum(axis=0))
-    by_pass = [_posterior(*one) for one in zip(one_by_one, narrowest, strict=True)]
-    shared, logarithm = _without_nuisances(normal, known)
+    by_pass = [_alone(*one, together[0], shared) for one in zip(one_by_one, narrowest, strict=True)]
+    common, logarithm = _without_nuisances(normal, known)
     unexplained = np.append(-together[0], 1.0)
-    left = unexplained @ shared.sum(axis=0) @ unexplained
+    left = unexplained @ common.sum(axis=0) @ unexplained
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(readings))
     size = sizes[:known]
@@ -194,6 +196,19 @@ def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:
     narrow = np.diag(np.linalg.pinv(white[:-1, :-1], hermitian=True)) / np.diag(spread)
     spread *= np.sqrt(np.outer(*2 * [np.maximum(1.0, narrow)]))
     return numbers.mean(axis=0), spread
+
+
+def _alone(
+    systems: Floats, white: Floats, together: Floats, shared: Sequence[int]
+) -> tuple[Floats, Floats]:
+    """What one pass says, the shared numbers being as all passes say: without a variance."""
+    own = np.delete(np.arange(systems.shape[-1]), list(shared))
+    numbers, covariance = together.copy(), np.zeros((len(together), len(together)))
+    moved = systems.copy()
+    moved[..., -1] -= systems[..., list(shared)] @ together[list(shared)]
+    kept = (one[..., own, :][..., own] for one in (moved, white))
+    numbers[own[:-1]], covariance[np.ix_(own[:-1], own[:-1])] = _posterior(*kept)
+    return numbers, covariance
 
 
 def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, Floats]:

@@ -1,7 +1,6 @@
 """What a fit of an object has found, and the likeliest of several families."""
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -49,21 +48,24 @@ def likeliest(
 ) -> Kind:
     """The fit of a family; with ``"auto"`` that of the least Schwarz criterion that explains all.
 
-    If none does, `otherwise` is what the object likely has.
+    If none does, `otherwise` is what the object likely has, unless some could not be fitted.
     """
-    if family != "auto":
-        found = [fit(family)]
-    else:
-        found = []
-        for name in known:
-            with suppress(InputError):  # one that the readings do not determine is none of them
-                found.append(fit(name))
+    found, refused = [], []
+    for name in known if family == "auto" else [family]:
+        try:
+            found.append(fit(name))
+        except InputError as error:  # as one that the readings do not determine
+            if family != "auto":
+                raise
+            refused.append(str(error))
     explaining = [one for one in found if one.explains]
     if family == "auto" and not explaining:
         best = ""
         if found:
             best = f", the best leaves {min(one.misfit for one in found):.3g} times the noise"
-        allowed = "one that explains the readings"
-        raise InputError("family", f"none of them{best}", allowed, f"likely {otherwise}")
+        why = f"likely {otherwise}"
+        if refused:
+            why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
+        raise InputError("family", f"none of them{best}", "one that explains the readings", why)
     rivals = {one.family: (one.bic, one.explains) for one in found}
     return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)

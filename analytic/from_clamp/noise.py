@@ -98,6 +98,12 @@ def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
     return np.asarray(np.maximum(stated, _SURELY * sizes), dtype=float)
 
 
+def bend_uncertainty(readings: Readings) -> Floats:
+    """What a bend of each zero's drift is known to, in the middle of a rig's pass; 0 of a line."""
+    known = readings.provenance.get("bend_uncertainty", {})
+    return np.array([known.get(name, 0.0) for name in CLAMP_READINGS], dtype=float)
+
+
 def covering(misses: Floats, axis: int) -> Floats:
     """The distance within which 95 % of the samples lie; a sample that is nowhere is far away."""
     far = np.nan_to_num(misses, nan=np.inf)

@@ -36,7 +36,8 @@ class Consistency:
     @property
     def farthest(self) -> int:
         """The pass that is farthest from the middle of all, over what its noise makes of it."""
-        away = np.abs(self.numbers - np.median(self.numbers, axis=0)) / self.stated
+        known = self.stated > 0  # the others are as all passes say
+        away = np.abs(self.numbers - np.median(self.numbers, axis=0))[:, known] / self.stated[known]
         return int(np.argmax(away.max(axis=1)))
 
 
@@ -48,12 +49,13 @@ def consistency(by_pass: Sequence[tuple[Floats, Floats]]) -> Consistency:
     mean = np.linalg.pinv(weights.sum(axis=0)) @ np.einsum("pij,pj->i", weights, numbers)
     away = numbers - mean
     stated = np.sqrt(np.einsum("pii->pi", covariances).mean(axis=0))
+    own = int(np.sum(stated > 0))
     return Consistency(
         numbers,
         numbers.std(axis=0, ddof=1),
         stated,
         float(np.einsum("pi,pij,pj->", away, weights, away)),
-        (len(numbers) - 1) * numbers.shape[1],
+        (len(numbers) - 1) * own,
     )
 
 

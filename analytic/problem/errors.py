@@ -43,6 +43,21 @@ class InputError(ValueError):
         """
         return InputError(name, *self._given[1:])
 
+    def because(self, remedy: str) -> "InputError":
+        """The same with another remedy, where more is known of the cause.
+
+        Parameters
+        ----------
+        remedy : str
+            What to do about it.
+
+        Returns
+        -------
+        InputError
+            To be raised.
+        """
+        return InputError(*self._given[:3], remedy)
+
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
         return type(self), self._given  # so that another process can hand it back
 

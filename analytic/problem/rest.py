@@ -52,14 +52,16 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
     steep = lean(grid)
     at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
     if not at_tip and steep[0] < -_ROUNDING:
-        name, what = "clamp_angle", f"{rest.angle:.6g}"
+        # Towards the motion: a sweep to the right is solved as its mirror image.
+        name, what = "clamp_angle", f"{rest.angle:.6g} rad towards where the foot goes"
         if isinstance(rest.natural, Along):
             name = "shape at rest, by natural curvature, weight and clamp_angle,"
             what = f"a tip at {tip_angle:.6g} rad"
         elif rest.angle == 0:
             name, what = "beam.natural_curvature", f"{rest.natural:.6g}/L at the tip"
         allowed = f"such that it does not lean over the upper side of the object ({contour.label})"
-        remedy = "lessen it; only the object's lower side can be touched"
+        remedy = "lessen it, or raise the object's widest place above the tip: only its lower side "
+        remedy += "can be touched"
         raise InputError(name, what, allowed, remedy)
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
     tangents = zeros(lambda _, t: lean(t), grid[crossings + 1], grid[crossings])

@@ -115,10 +115,10 @@ def check_same_beam(
     sizes, others = ((beam.length, beam.base_rigidity) for beam in (one, other))
     if not np.allclose(sizes, others, rtol=1e-9, atol=0):
         raise InputError(
-            "beams of the two readings",
-            f"{one} and {other}",
+            "vibrissae of the two sweeps",
+            f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}",
             "the same, in the same units",
-            "compare sweeps of one vibrissa, both in its units",
+            "state the one that was measured: --beam FILE, as the case's own",
         )
 
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.kinds import A_RIG, For, no_rigs, pass_files, require_use
+from compare.commands.kinds import A_RIG, For, from_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -17,7 +17,7 @@ from compare.commands.options import (
     out_folder,
     words,
 )
-from compare.commands.output import distinct_name, output_folder, waiting
+from compare.commands.output import check_own, distinct_name, output_folder, waiting
 
 KNOWN = "a sweep past a known object"
 
@@ -36,7 +36,7 @@ def calibrate(
         str,
         option(
             "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, "
-            "tip_radius, friction, offset (of foot_x).",
+            "tip_radius, friction, offset (of foot_x), lag (of the readings behind it).",
             "A,B,...",
         ),
     ] = "flexural_rigidity",
@@ -54,31 +54,43 @@ def calibrate(
     """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Several passes
-    are pooled. Exit code 1: the fit leaves more than the noise, or passes do not say the same.
+    are pooled. What is found becomes a case, too, DIR/case.toml. Exit code 1: the fit leaves more
+    than the noise, or passes do not say the same.
     """
     level = number_or_auto("--noise", noise)
     first, files = files[0], pass_files(files)
-    require_use(context, KNOWN, *([] if no_rigs(files) and not column else [A_RIG]))
+    require_use(context, KNOWN, *([A_RIG] if from_rigs(files) or column else []))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
+    from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
+    from compare.commands.comparing import RigFiles
     from compare.commands.sweep_lines import note_rows
-    from compare.read.case import load_job
-    from compare.read.rig import read_measured
+    from compare.read.case import case_tables, load_job
     from compare.sense.record import without_dropouts
+    from compare.show.case_file import CASE_MARK, calibrated_case
     from compare.show.fits import calibration_document, calibration_summary
+    from compare.show.lag import lag_remembered
 
     known = load_job(case).case
-    passes = [
-        without_dropouts(read_measured(file, None, column or (), known.beam, direction))
-        for file in files
-    ]
+    rig = RigFiles(column or (), None, direction, "world")
+    passes = [without_dropouts(one) for one in rig.read_all(files, known.beam)]
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(passes, level)
         found = calibrate_case(passes, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(first)}-calibrated") as folder:
+        check_own(folder / "case.toml", CASE_MARK)
         for one in passes:
             note_rows(one)
+        if LAG not in found.found and (said := lag_remembered(passes)) is not None:
+            terminal.print_line(f"{said}: fit lag too")
         terminal.show(*calibration_summary(found))
         terminal.keep(folder / "calibration.json", calibration_document(found))
+        text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
+        terminal.keep(folder / "case.toml", text)
+        off, shift = found.found.get("offset"), ""
+        if off is not None and not off.lowest <= 0 <= off.highest:
+            shift = f" --offset {off.value:.4g}"
+        made = folder / "case.toml"
+        terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
     return AGREES if found.explains else DISAGREES

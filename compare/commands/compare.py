@@ -117,6 +117,8 @@ def compare(
         if kind == SEVERAL:
             several = comparing.side_by_side_of(job, Path(reference), candidates, rig)
             return comparing.keep_side_by_side(several, out or Path("results") / "side-by-side")
+        if job is not None:
+            job = comparing.turned(job, candidates if passes else [], rig)
         other = replace(rig, columns=reference_column or (), beam=reference_beam)
         expected = comparing.expected(job, Path(reference), kind == SPACE, other)
         repeated = comparing.mean_of(candidates, expected, rig) if passes else None

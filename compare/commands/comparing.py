@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from analytic import Beam, Direction, InputError, Readings
+from analytic import Beam, Direction, InputError, Readings, Sweep
 from analytic.problem.readings_file import is_ours
 from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_complaint
 from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.options import AGREES, DISAGREES
-from compare.commands.output import distinct_names, output_folder
+from compare.commands.output import distinct_names, page_folder
 from compare.commands.pipeline import AnyComparison, reported
 from compare.commands.sweep_lines import note_rows
 from compare.commands.sweeping import AnyReadings
@@ -45,6 +45,19 @@ class RigFiles:
         """A sweep in the plane, of that vibrissa if nothing else says."""
         return read_measured(file, self.beam, self.columns, otherwise, self.direction)
 
+    def read_all(self, files: Sequence[Path], otherwise: Beam | None = None) -> list[Readings]:
+        """The sweeps of some files, of passes those in the direction that is asked for."""
+        found = [self.read(file, otherwise) for file in files]
+        kept = [
+            one
+            for one in found
+            if self.direction in (None, one.provenance.get("direction", self.direction))
+        ]
+        if not kept:
+            went = "they all go the other way: choose it, or leave --direction out"
+            raise InputError("--direction", self.direction, "that of a pass", went)
+        return kept
+
 
 def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:
     """The reference: the closed form of a case, or what a file holds."""
@@ -67,20 +80,34 @@ def mean_of(files: Sequence[Path], reference: AnyReadings, rig: RigFiles) -> Rep
     """Passes that went as the reference did, with their mean."""
     if isinstance(reference, SpatialReadings):
         raise InputError("CANDIDATE", "passes", "one file in space", "compare one by one")
-    passes = [rig.read(file, vibrissa_of(reference)) for file in files]
-    ways = {one.provenance["direction"] for one in passes}
-    if len(ways) > 1 and rig.direction is None:
-        swept = 'the other way beside a case with [sweep] direction = "right"'
-        raise InputError(
-            "passes",
-            "to the left and to the right",
-            "to one side",
-            f"--direction left; {swept}",
-        )
-    chosen = [one for one in passes if rig.direction in (None, one.provenance["direction"])]
-    if len(chosen) < 2:
-        raise InputError("passes to the side", len(chosen), "2 or more", "choose the other side")
-    return repeats(chosen)
+    passes = rig.read_all(files, vibrissa_of(reference))
+    check_one_way(passes)
+    if len(passes) < 2:
+        raise InputError("passes to the side", 1, "2 or more", "name the file of the pass alone")
+    return repeats(passes)
+
+
+def check_one_way(passes: Sequence[Readings]) -> None:
+    """Refuse passes in both directions: no sweep is both."""
+    if len({one.provenance["direction"] for one in passes}) > 1:
+        given, remedy = "to the left and to the right", "--direction left, then --direction right"
+        raise InputError("passes", given, "to one side", remedy)
+
+
+def turned(job: AnyJob, files: Sequence[Path], rig: RigFiles) -> AnyJob:
+    """The case swept as the passes were; or as is asked for, if there are none."""
+    if not isinstance(job, Job) or not isinstance(job.case.sweep, Sweep):
+        return job
+    way = rig.direction
+    if way is None and files:
+        passes = [Readings.read(file) for file in files]
+        check_one_way(passes)
+        way = passes[0].provenance["direction"]
+    sweep = job.case.sweep
+    if way in (None, sweep.direction):
+        return job
+    back = replace(sweep, start=sweep.stop, stop=sweep.start, direction=way)
+    return replace(job, case=replace(job.case, sweep=back))
 
 
 def compared(
@@ -124,7 +151,7 @@ def keep_comparison(
     found: AnyComparison, out: Path, body: Body | None, passes: Repeats | None
 ) -> int:
     """Write the report and print it; the exit code."""
-    with output_folder(out) as folder:
+    with page_folder(out) as folder:
         written = reported(found, folder, body=body)
     for readings in (found.reference, found.candidate):
         if isinstance(readings, Readings):
@@ -165,7 +192,7 @@ def side_by_side_of(
 
 def keep_side_by_side(found: SideBySide, out: Path) -> int:
     """Write and print how far all are apart; the exit code."""
-    with output_folder(out) as folder:
+    with page_folder(out) as folder:
         for readings in (found.reference, *(one.candidate for one in found.against.values())):
             note_rows(readings)
         terminal.show(*summary(found))

@@ -59,13 +59,17 @@ def export(
         check_own(out, "In a robot:")
     with waiting("loading"):
         from compare.commands import terminal
-        from compare.read.case import load_job
+        from compare.read.case import load_case
+        from compare.read.job import Job
         from compare.simulate.prescription import LADDER, prescribe
         from mujoco_models.beams.available import require
         from mujoco_models.export.sweep import beside
         from mujoco_models.export.urdf import LACKING, as_urdf
         from mujoco_models.motion import Motion
-    job = load_job(case)
+    job = load_case(case)
+    if not isinstance(job, Job):
+        remedy = "put one in its place: the whisker is chosen by a sweep past it"
+        raise InputError(f"{case}: [body]", "given", "a [profile], in the plane", remedy)
     if job.model is not None:
         raise InputError("CASE", case, "one without a [model]", "that is a model already")
     kind = beam or job.settings.beam

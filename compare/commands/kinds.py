@@ -75,6 +75,11 @@ def no_rigs(files: Iterable[Path]) -> bool:
     return all(is_ours(file) for file in files)
 
 
+def from_rigs(files: Collection[Path]) -> bool:
+    """Whether a rig's file is among these, or passes of one: then a direction says something."""
+    return not no_rigs(files) or are_passes(files)
+
+
 def pass_files(files: Iterable[Path]) -> list[Path]:
     """The files of readings; of a folder that ``rig`` wrote those of its passes."""
     found = []

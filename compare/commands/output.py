@@ -16,6 +16,8 @@ from analytic.problem.errors import InputError
 
 _SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "ended by SIGTERM", "SIGHUP": "ended by SIGHUP"}
 _LONGEST = 100  # characters of a name
+_PAGES = ("report.html", "engines.html", "side-by-side.html", "peers.html")
+_OWN_PAGE = "This report"  # the caption of the last table of each page
 
 
 class Ended(KeyboardInterrupt):
@@ -46,9 +48,18 @@ def output_folder(folder: Path) -> Iterator[Path]:
         _remove_empty(made)
 
 
+@contextmanager
+def page_folder(folder: Path) -> Iterator[Path]:
+    """Make a folder that a page is written to; no page in it may be somebody else's."""
+    for name in _PAGES:
+        check_own(folder / name, _OWN_PAGE)
+    with output_folder(folder):
+        yield folder
+
+
 def check_own(path: Path, mark: str) -> None:
     """Refuse to replace a file that nobody named, unless it has the mark of the command's own."""
-    if path.exists() and mark not in path.read_text(encoding="utf-8", errors="replace"):
+    if path.is_file() and mark not in path.read_text(encoding="utf-8", errors="replace"):
         raise InputError("output", path, "free, or from an earlier run", "move it, or name another")
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import A_RIG, For, no_rigs, pass_files, require_use
+from compare.commands.kinds import A_RIG, For, from_rigs, no_rigs, pass_files, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -90,15 +90,16 @@ def reconstruct(
 
     in_space = [one for one in found if known is not None or is_spatial(one)]
     swept = [one for one in found if one not in in_space]
-    for kind, some in ((SWEEP, swept), (SPACE, in_space)):
-        if some:
-            require_use(context, kind, *([] if no_rigs(some) and not column else [A_RIG]))
+    if swept:
+        require_use(context, SWEEP, *([A_RIG] if column or from_rigs(swept) else []))
+    if in_space:
+        require_use(context, SPACE, *([A_RIG] if column or not no_rigs(in_space) else []))
     with waiting("loading"):
         from compare.commands import reconstructing
     rig = reconstructing.RigFiles(column or (), beam, direction, frame)
     code = AGREES
     if swept:
-        passes = [reconstructing.without_faults(rig.read(path), offset) for path in swept]
+        passes = [reconstructing.without_faults(one, offset) for one in rig.read_all(swept)]
         place = out / "passes" if out and in_space else out
         place = place or Path("results") / f"{distinct_name(files[0])}-reconstructed"
         if not reconstructing.in_the_plane(passes, place, noise, friction, words(method), fit):
@@ -112,7 +113,13 @@ def reconstruct(
             code = DISAGREES
     if sweeps and fit is not None:
         place = out or Path("results") / f"{distinct_name(in_space[0])}-reconstructed"
-        if not reconstructing.body_of(sweeps, place, noise or 0.0, fit):
+        try:
+            explained = reconstructing.body_of(sweeps, place, noise or 0.0, fit)
+        except InputError as error:
+            if code == AGREES:
+                raise
+            raise error.because("what is said of the readings above comes first") from error
+        if not explained:
             code = DISAGREES
     return code
 

@@ -36,6 +36,7 @@ from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
 from compare.show.figures.space import sweep_in_space
 from compare.show.fits import band_document, band_summary, object_document, object_summary
+from compare.show.lag import lag_remembered
 from compare.show.numbers import quantity
 from compare.show.scene import SweepScene, solid_ply
 
@@ -131,6 +132,8 @@ def in_the_plane(
     with output_folder(place) as folder:
         for one in passes:
             note_rows(one)
+        if (said := lag_remembered(passes)) is not None:
+            terminal.print_line(said)
         for name, each in contacts.items():
             end = "" if name == "elastica" else f"-{name}"
             for one, found in zip(passes, each, strict=True):

@@ -7,7 +7,7 @@ import typer
 
 from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, DISAGREES, out_folder
-from compare.commands.output import output_folder, waiting, warn
+from compare.commands.output import page_folder, waiting, warn
 
 _MAKE = "make one: vibrissa run CASE --out DIR, or vibrissa study FILE --out DIR"
 
@@ -32,7 +32,7 @@ def report(
     from compare.commands.pipeline import print_comparison
     from compare.report import write_report
 
-    with output_folder(out or folder), waiting("reading"):
+    with page_folder(out or folder), waiting("reading"):
         found = write_report(folder, out, warn)
     if found.comparison is not None:
         print_comparison(found.comparison, found.parts)

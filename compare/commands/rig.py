@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from compare.commands.options import AGREES, option, out_folder
-from compare.commands.output import distinct_name, output_folder
+from compare.commands.output import distinct_name, output_folder, waiting
 
 
 def rig(
@@ -26,23 +26,31 @@ def rig(
     each pass is written first. What cannot be, as a contact called free, is refused. Each pass
     becomes a file; `calibrate`, `compare` and `reconstruct` take their folder.
     """
+    from analytic.from_clamp.object.lag import lag_between
     from compare.commands import terminal
     from compare.measure.repeats import repeats
     from compare.read.passes import look_at_passes, swept_alike, usable
     from compare.read.rig_file import read_rig
     from compare.show.figures.readings import pass_picture, passes_picture
+    from compare.show.lag import lag_summary, with_lag
     from compare.show.passes import passes_document, passes_summary
 
-    passes = look_at_passes(files, read_rig(rig))
+    described = read_rig(rig)
+    passes = look_at_passes(files, described)
     with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
         gc.freeze()  # what there is stays: a collection looks at the picture alone
         for one in passes:
             terminal.keep(folder / f"{one.name}.png", pass_picture(one))
             gc.collect()  # a picture is a cycle, and those of ten passes hold 60 MB
         found = [repeats([one.readings for one in some]) for some in swept_alike(usable(passes))]
-        terminal.show(*passes_summary(passes, found))
+        with waiting("looking for a lag"):
+            lag = lag_between([one.readings for one in passes])
+        terminal.show(
+            *passes_summary(passes, found), *lag_summary(passes, lag, described.passes.lag)
+        )
         for one in passes:
-            terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
-        terminal.keep(folder / "passes.json", passes_document(passes, found))
+            readings = one.readings if lag is None else with_lag(one.readings, lag)
+            terminal.print_written(readings.write(folder / f"{one.name}.parquet"))
+        terminal.keep(folder / "passes.json", passes_document(passes, found, lag))
         terminal.keep(folder / "passes.png", passes_picture(passes))
     return AGREES

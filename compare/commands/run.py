@@ -31,7 +31,7 @@ from compare.commands.options import (
     option,
     require_fraction,
 )
-from compare.commands.output import output_folder, waiting
+from compare.commands.output import page_folder, waiting
 from compare.read.kinds import PLANE, SPACE
 
 _OURS = ("mujoco",)
@@ -103,7 +103,7 @@ def run(
     if target is not None:
         require_fraction("--target", target, "1e-3")
     job = changes.made(loaded)
-    with output_folder(changes.folder(out, job.case.name)) as folder:
+    with page_folder(changes.folder(out, job.case.name)) as folder:
         with waiting("loading"):
             from compare.commands.pipeline import Asked, carry_out
 

@@ -8,7 +8,7 @@ import typer
 
 from compare.commands.kinds import For, require_use
 from compare.commands.options import AGREES, DISAGREES, flag, option, out_folder
-from compare.commands.output import warn
+from compare.commands.output import Ended, warn
 
 HERE, ON_A_CLUSTER, COUNTED = "a study done here", "a study done on a cluster", "a dry run"
 
@@ -70,7 +70,7 @@ def study(
         todo = (run for run in plan if run.id not in done)
         count = len(plan) - len(done)
         print_line(f"{len(plan)} runs, {len(done)} of them done already")
-        if count:
+        try:
             with (
                 progress(plan.study.name, count) as advance,
                 closing(carry_out(todo, plan.study.recipe, crew)) as results,
@@ -79,6 +79,10 @@ def study(
                     store.add(result)
                     counts[result.row["outcome"]] = counts.get(result.row["outcome"], 0) + 1
                     advance()
+        except KeyboardInterrupt as error:
+            kept = len(done) + sum(counts.values())
+            how = f"kept {kept} of {len(plan)} runs in {folder}: the same command does the others"
+            raise Ended(f"{error or 'interrupted'}; {how}") from error
     said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(counts.items()))
     print_line(f"{said or 'nothing to do'}; in {folder}")
     return AGREES if counts.keys() <= {"done"} else DISAGREES

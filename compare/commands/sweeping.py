@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from analytic import Readings
+from analytic import InputError, Readings
 from analytic.space import (
     Body,
     Cloud,
@@ -86,6 +86,8 @@ def find_body(
         points = reconstruct_space(readings, deviations([readings], noise))
     complaint = wrench_complaint(points)
     if complaint is not None:
+        if points["contact_x"].isna().all():
+            raise InputError("readings", "without a contact", "of such a vibrissa", complaint)
         terminal.print_line(f"readings: {complaint}")
     cloud = point_cloud(points)
     terminal.print_line(_reconstructed(cloud, body, readings.beam.length))

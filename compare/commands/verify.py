@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated
 
 from compare.commands.options import AGREES, DISAGREES, flag, out_folder
-from compare.commands.output import output_folder
+from compare.commands.output import page_folder
 
 
 def verify(
@@ -18,7 +18,7 @@ def verify(
 
     The exit code is 1 if any number differs by more than its stated reason makes.
     """
-    with output_folder(out or Path("results/verify")) as folder:
+    with page_folder(out or Path("results/verify")) as folder:
         return (_peers if peers else _sources)(folder)
 
 

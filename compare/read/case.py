@@ -1,6 +1,8 @@
 """Cases by name or TOML file, and what is to be done with them."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from analytic import NAMED_TABLES, InputError, named_case
 from analytic.problem.errors import unknown
@@ -47,13 +49,26 @@ def load_case(name_or_path: str | Path) -> Job | SpaceJob:
     return job_in_the_plane(file)
 
 
+def case_tables(name_or_path: str | Path) -> tuple[Mapping[str, Any], Path]:
+    """What the file of a case says, or would say of a named one; and its folder."""
+    name = str(name_or_path)
+    if name in NAMED_TABLES:
+        return NAMED_TABLES[name], Path()
+    from compare.read.toml import TomlFile
+
+    return TomlFile.read(Path(name), "case file").tables, Path(name).parent
+
+
 def load_job(name_or_path: str | Path) -> Job:
     """The case in the plane of that name, or from that TOML file."""
     job = load_case(name_or_path)
     if isinstance(job, Job):
         return job
     raise InputError(
-        f"{name_or_path}: body", "given", "left out in the plane", "`vibrissa run` takes it"
+        f"{name_or_path}: [body]",
+        "given",
+        "a [profile], in the plane",
+        "what takes a body are `vibrissa run`, `compare` and `reconstruct`",
     )
 
 

@@ -1,9 +1,9 @@
 """The passes in the files of a rig: calibrated, without defects, their zero taken off."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,7 @@ from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
+from compare.read.drift import FEWEST, Bent, Zero, bent, no_zero, zero_of
 from compare.read.kinds import TEXTS
 from compare.read.nonsense import check_ahead, check_back, check_channels, check_drift, check_free
 from compare.read.rig import cells, read_sweeps
@@ -19,7 +20,7 @@ from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
 
-_FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
+_MIDDLE = 2.0  # times the root mean square of a bend is at most what it has midway, if lopsided
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,10 +40,12 @@ class Pass:
     # changes until after it [force, force length]. NaN if no such stretch is known.
     zero: dict[str, float]
     drift: dict[str, float]
+    drawn: Zero  # the same, and how well it is known
     raw: Floats  # shape (3, rows); the clamp readings before defects and zero were taken off
     taken: Floats  # shape (3, rows); what was taken off, NaN if no free stretch is known
     free: Booleans  # shape (rows,); the free stretches
     fault: InputError | None  # why the pass is not to be used
+    bends: bool = False  # whether the drift that was taken off is a curve
 
     @property
     def kept(self) -> int:
@@ -70,7 +73,7 @@ def look_at_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
         if stems.count(path.stem) > 1:
             allowed = "of a name that no other has"
             raise InputError("FILE", path, allowed, "rename it: passes take it")
-    return [one for path in files for one in _of_file(path, rig)]
+    return _straightened([one for path in files for one in _of_file(path, rig)])
 
 
 def _files(source: Path) -> list[Path]:
@@ -90,11 +93,11 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
     sweeps = []
     for group in np.unique(groups):
         rows = raw[groups == group].reset_index(drop=True)
-        if len(rows) >= _FEWEST:
+        if len(rows) >= FEWEST:
             check_back(rows["foot_x"].to_numpy(), path.stem)
             sweeps += read_sweeps(rows, rig.beam.build())
     if not sweeps:
-        raise InputError(f"rows of {path}", len(raw), f"{_FEWEST} or more", "is it the right file?")
+        raise InputError(f"rows of {path}", len(raw), f"{FEWEST} or more", "is it the right file?")
     for number, (direction, readings) in enumerate(sweeps, 1):
         name = path.stem if len(sweeps) == 1 else f"{path.stem}-{number}"
         yield _pass(name, direction, readings, rig)
@@ -117,6 +120,10 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
         numbers = as_numbers(column, said.column, table.place)
         zero = 0.0 if name in CLAMP_READINGS else said.zero
         found[name] = said.scale(name) * (numbers - zero)
+    clock = rig.columns.time
+    if clock is not None:
+        column = cells(table.frame, clock.column, path, "fix [columns]")
+        found["time"] = clock.scale("time") * as_numbers(column, clock.column, table.place)
     return pd.DataFrame(found)
 
 
@@ -130,6 +137,10 @@ def _groups(table: RawTable, rig: Rig, path: Path) -> Floats:
 
 
 def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
+    late = rig.passes.lag if direction == "right" else -rig.passes.lag
+    speed = _speed(raw)
+    there = raw.table.drop(columns="time", errors="ignore")
+    raw = replace(raw, table=there.assign(foot_x=there["foot_x"] - late))
     record, counts = inspect_record(raw), raw.provenance.get("rows", {})
     dropped = {
         "without_foot_x": int(raw.provenance.get("rows_without_foot_x", 0)),
@@ -143,8 +154,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
-    unknown = np.full(len(CLAMP_READINGS), np.nan)
-    zero = _Zero(unknown, unknown, unknown, np.full_like(before, np.nan))
+    zero = no_zero(before)
     try:
         check_channels(read, name)
         check_ahead(foot_x, before, name)
@@ -153,13 +163,15 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             free = np.any([*stretches.values()], axis=0)
             for which, here in stretches.items():
                 check_free(which, getattr(rig.passes, which), foot_x, before, here, name)
-            zero = _zero(foot_x, before, stretches, name)
+            zero = zero_of(foot_x, before, stretches, name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
     except InputError as error:
         fault = error
     table = raw.table.assign(**_by_reading(values))
-    provenance = {"pass": name, "direction": direction, "dropped": dropped}
+    provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
+    if speed is not None:
+        provenance["speed"] = speed
     if np.isfinite(zero.uncertainty).all():
         provenance["zero_uncertainty"] = _by_reading(zero.uncertainty.tolist())
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
@@ -174,11 +186,22 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         record,
         _by_reading(zero.before.tolist()),
         _by_reading(zero.drift.tolist()),
+        zero,
         before,
         zero.line,
         free,
         fault,
     )
+
+
+def _speed(raw: Readings) -> float | None:
+    """Of the foot, in the median of the pass; None if no column has the time."""
+    if "time" not in raw.table:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speeds = np.abs(np.diff(raw.values("foot_x")) / np.diff(raw.values("time")))
+    known = speeds[np.isfinite(speeds) & (speeds > 0)]
+    return float(np.median(known)) if len(known) else None
 
 
 def _by_reading(values: Iterable[Any]) -> dict[str, Any]:
@@ -195,40 +218,29 @@ def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
     }
 
 
-class _Zero(NamedTuple):
-    """Of the clamp readings before the contact, and how it drifts until after it."""
+def _straightened(passes: list[Pass]) -> list[Pass]:
+    """The passes without the curve that the drift of all of them has."""
+    known = [one for one in passes if one.fault is None and np.isfinite(one.drawn.bend).all()]
+    curves = bent([one.drawn for one in known]) if known else []
+    of_pass = {one.name: curve for one, curve in zip(known, curves, strict=True)}
+    return [_without(one, of_pass[one.name]) if one.name in of_pass else one for one in passes]
 
-    before: Floats  # shape (3,)
-    drift: Floats  # shape (3,)
-    uncertainty: Floats  # shape (3,); NaN of one stretch, which shows no drift
-    line: Floats  # shape (3, rows); from the one stretch to the other
 
-
-def _zero(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str) -> _Zero:
-    means, places, uncertain = [], [], []
-    steps = np.array([np.nanmin(np.diff(np.unique(row))) for row in values])  # of the converter
-    for which, here in free.items():
-        sound = here & np.isfinite(values).all(axis=0)
-        if sound.sum() < _FEWEST:
-            raise InputError(
-                f"passes.{which}",
-                f"a stretch with {sound.sum()} rows of {name}",
-                f"one with {_FEWEST} or more",
-                "take a longer one, or leave it out",
-            )
-        means.append(values[:, sound].mean(axis=1))
-        places.append(foot_x[sound].mean())
-        # Noise that remembers makes the means of blocks scatter more than white noise would.
-        blocks = np.array_split(values[:, sound], _FEWEST, axis=1)
-        with np.errstate(over="ignore"):  # such numbers are refused below
-            between = np.std([x.mean(axis=1) for x in blocks], axis=0, ddof=1) / np.sqrt(_FEWEST)
-            white = values[:, sound].std(axis=1, ddof=1) / np.sqrt(sound.sum())
-        uncertain.append(np.max([between, white, steps / np.sqrt(12)], axis=0))
-    drift, way = means[-1] - means[0], places[-1] - places[0]
-    share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
-    line = means[0][:, None] + drift[:, None] * share
-    known = np.max(uncertain, axis=0) if len(free) > 1 else np.full_like(drift, np.nan)
-    return _Zero(means[0], drift, known, line)
+def _without(one: Pass, curve: Bent) -> Pass:
+    readings = one.readings
+    values = np.stack([readings.values(name) for name in CLAMP_READINGS]) - curve.away
+    more = curve.uncertainty if curve.shows else 0.0  # a curve is lopsided, and no parabola
+    uncertain = np.hypot(one.drawn.uncertainty, more)
+    cleared = replace(
+        readings,
+        table=readings.table.assign(**_by_reading(values)),
+        provenance={
+            **readings.provenance,
+            "zero_uncertainty": _by_reading(uncertain.tolist()),
+            "bend_uncertainty": _by_reading((_MIDDLE * curve.uncertainty).tolist()),
+        },
+    )
+    return replace(one, readings=cleared, taken=one.taken + curve.away, bends=curve.shows)
 
 
 def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:

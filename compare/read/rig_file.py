@@ -22,16 +22,17 @@ class RigColumn(Table):
 
     def scale(self, name: str) -> float:
         """What a cell's unit is in those of the readings."""
-        return self.gain * (unit_in_si(self.unit, DIMENSIONS[name]) if self.unit else 1.0)
+        return self.gain * (unit_in_si(self.unit, DIMENSIONS.get(name, "s")) if self.unit else 1.0)
 
 
 class RigColumns(Table):
-    """The four sensed quantities."""
+    """The four sensed quantities, and the time if there is one."""
 
     foot_x: RigColumn
     force_x: RigColumn
     force_y: RigColumn
     moment_z: RigColumn
+    time: RigColumn | None = None
 
     def __getitem__(self, name: str) -> RigColumn:
         column: RigColumn = getattr(self, name)
@@ -57,6 +58,8 @@ class RigPasses(Table):
     # sensor reads there is its zero, taken off along a straight line from one to the other.
     free_before: _Stretch = 0.0
     free_after: _Stretch = 0.0
+    # How far the foot goes until a reading of its place is there: taken off in either direction.
+    lag: Length = 0.0
 
 
 class Rig(Table):

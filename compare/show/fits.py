@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Beam, Calibration, FittedObject
 from analytic.from_clamp.calibration.calibrate import Estimate
+from analytic.from_clamp.calibration.unknowns import LAG, OF_THE_FOOT
 from analytic.problem.quantities import QUANTITIES
 from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
@@ -26,11 +27,16 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
             "the case says (a sign, a unit, the object's place), and what follows is not to be "
             "trusted. `vibrissa compare` looks for the cause."
         )
+        if calibration.both_ways and LAG not in calibration.found:
+            yield Text("  Passes both ways show whether readings lag behind the foot: fit lag too.")
     rows = []
     for name, found in calibration.found.items():
-        unit = QUANTITIES["foot_x" if name == "offset" else name].dimension if si else ""
-        scatter = [_number(calibration.scatter[name])] if name in calibration.scatter else []
-        rows.append((*_interval(name, found), unit, *scatter))
+        unit = QUANTITIES["foot_x" if name in OF_THE_FOOT else name].dimension if si else ""
+        row = [*_interval(name, found), unit]
+        if passes is not None:  # of a lag a pass alone says nothing
+            scatter = calibration.scatter
+            row.append(_number(scatter[name]) if name in scatter else "")
+        rows.append(row)
     head, of = ["found", "value", "95 % from", "to", ""], ""
     if passes is not None:
         head, of = [*head, "passes scatter by"], f" of {len(passes.numbers)} passes"

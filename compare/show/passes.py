@@ -1,15 +1,19 @@
 """The passes of a rig: what was kept, what was dropped, how far they repeat."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from analytic import CLAMP_READINGS
+from analytic.from_clamp.object.lag import Lag
 from analytic.from_clamp.passes import Consistency
 from compare.measure.repeats import Repeats
 from compare.read.passes import Pass
 from compare.show.document import Block, Table, Text
+
+_DRIFTS = 0.01  # of the largest reading: more than the noise of most sensors
 
 
 def passes_summary(passes: Sequence[Pass], found: Sequence[Repeats]) -> Iterator[Block]:
@@ -26,8 +30,27 @@ def passes_summary(passes: Sequence[Pass], found: Sequence[Repeats]) -> Iterator
     yield Table("Passes: rows, and why some are not used", counted, rows, words=(0, 1, 6))
     head = ("pass", *CLAMP_READINGS)
     yield Table("Drift of the zero, over the largest reading", head, drifts)
+    yield from _not_taken_off(passes)
+    if any(one.bends for one in passes):
+        yield Text("the zeros drift along a curve, which is taken off; the intervals know how well")
     for one_way in found:
         yield from repeats_summary(one_way)
+
+
+def _not_taken_off(passes: Sequence[Pass]) -> Iterator[Text]:
+    """The largest drift that a single free stretch shows, of which nothing is taken off."""
+    shares = []
+    for one in passes:
+        sizes = [np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in CLAMP_READINGS]
+        pairs = zip(CLAMP_READINGS, one.drawn.ahead, sizes, strict=True)
+        shares += [(abs(x / size), n, one.name) for n, x, size in pairs if size > 0]
+    share, name, of = max(shares, default=(0.0, "", ""))
+    if share > _DRIFTS:
+        yield Text(
+            f"{name} of {of} drifts where it is free, by {share:.0%} of its largest value over the "
+            "pass if it goes on so, and nothing of that is taken off: state both free_before and "
+            "free_after"
+        )
 
 
 def repeats_summary(found: Repeats) -> Iterator[Block]:
@@ -63,9 +86,11 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
     )
 
 
-def passes_document(passes: Sequence[Pass], found: Sequence[Repeats]) -> dict[str, Any]:
+def passes_document(
+    passes: Sequence[Pass], found: Sequence[Repeats], lag: Lag | None
+) -> dict[str, Any]:
     """What ``passes.json`` holds."""
-    said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift")
+    said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift", "bends")
     return {
         "passes": [
             {
@@ -75,6 +100,7 @@ def passes_document(passes: Sequence[Pass], found: Sequence[Repeats]) -> dict[st
             }
             for one in passes
         ],
+        "lag": lag and asdict(lag),
         "repeats": [
             {
                 "passes": list(repeated.names),

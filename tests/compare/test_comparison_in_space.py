@@ -200,7 +200,10 @@ def test_frames_turn_the_components_and_nothing_else(exact):
         (lambda a, _: compare(a, changed(a, foot_x=a.values("foot_x") + 0.1)), "the same foot pos"),
         (lambda a, _: SpatialTolerances(rms=-1.0), r"tolerances\.rms"),
         (lambda a, _: SpatialTolerances(special={"force_w.rms": 1.0}), "force_w"),
-        (lambda a, _: compare(a, replace(a, beam=Beam(flexural_rigidity=2.0))), "beams of the two"),
+        (
+            lambda a, _: compare(a, replace(a, beam=Beam(flexural_rigidity=2.0))),
+            "vibrissae of the two",
+        ),
         (lambda a, _: compare(a, replace(a, tangent=(0.1, 1, 0))), "tangent"),
         (lambda a, _: compare(a, a.table), "candidate"),
         (lambda a, _: compare(a, a, offset=0.1), "offset"),

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
-from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, checked_unknowns
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -37,6 +37,7 @@ _ENOUGH = 4000  # stations of which a fit is sought
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
 _ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
+_NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
 
@@ -67,8 +68,9 @@ class Calibration(Shown):
         `Estimate` by unknown.
     case : Case
         The case with the values found.
-    offset : float
-        By how much the readings' ``foot_x`` is too large, if that was asked for [length].
+    offset, lag : float
+        By how much the readings' ``foot_x`` is too large, and by how much it is along the motion,
+        if that was asked for [length].
     correlation : array, shape (unknowns, unknowns)
         Of the errors, of the clamp's compliance in place of its stiffness.
     stations : int
@@ -86,6 +88,8 @@ class Calibration(Shown):
         stiffness and over the case's units, and whether these differ by noise alone.
     scatter : dict
         Standard deviation of what each pass alone says, by unknown; empty for one pass.
+    both_ways : bool
+        Whether there are passes to the left and to the right, which show a lag.
     undistinguished : Undistinguished or None
         Where two unknowns trade off (correlation beyond 0.9): the direction in which all unknowns
         may be off at once, and which further sweep would narrow it.
@@ -94,6 +98,7 @@ class Calibration(Shown):
     found: dict[str, Estimate]
     case: Case
     offset: float
+    lag: float
     correlation: Floats
     stations: int
     misfit: float
@@ -101,6 +106,7 @@ class Calibration(Shown):
     jitter: float
     passes: Consistency | None
     scatter: dict[str, float]
+    both_ways: bool
     undistinguished: Undistinguished | None
 
     @property
@@ -161,7 +167,8 @@ def calibrate(
     unknowns : sequence of str
         Some of ``flexural_rigidity`` (at the clamp), ``clamp_stiffness``, ``clamp_angle``,
         ``natural_curvature``, ``tip_radius`` (of a cone whose rigidity follows it), ``friction``,
-        and ``offset``, by how much ``foot_x`` is too large.
+        ``offset``, by how much ``foot_x`` is too large, and ``lag``, by how much it is along the
+        motion: how far the foot goes until a reading is there. That takes passes both ways.
     noise : mapping, optional
         Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
         it is what the readings themselves show.
@@ -187,6 +194,9 @@ def calibrate(
     for one in passes:
         check_size(one, case)
     measured = Measured.of(passes, case.support.carried(case.beam), noise, len(names))
+    if LAG in names and len(set(measured.ways)) < 2:
+        remedy = "leave it out, or take passes to the other side, too"
+        raise InputError("unknowns", "lag", "of passes to the left and to the right", remedy)
     direction = measured.ways[0]
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
@@ -217,13 +227,15 @@ def calibrate(
         intervals(DOUBLE_SIDED_95 * deviations),
         sought.case,
         sought.offset,
+        sought.lag,
         covariance / np.outer(deviations, deviations),
         len(fit.measured.foot_x),
         misfit,
         known.noise,
         float(fit.measured.spread[0]),
         alike,
-        {name: (one.highest - one.lowest) / 2 for name, one in scattered.items()},
+        {name: (one.highest - one.lowest) / 2 for name, one in scattered.items() if name != LAG},
+        len(set(measured.ways)) > 1,
         hidden,
     )
 
@@ -313,11 +325,16 @@ def _knowing_the_noise(
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
     measured = fit.measured
-    nuisances = fit.whitening
-    if len(measured.rows) > 1:
-        along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
-        nuisances = np.concatenate([nuisances, along[:, None, None] * nuisances], axis=2)
-    uncertain = np.tile(measured.zero, nuisances.shape[2] // len(CLAMP_READINGS))
+    shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
+    along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
+    if len(measured.rows) > 1 or measured.bend.any():
+        shapes, uncertain = [*shapes, along], [measured.zero, measured.zero]
+    if measured.bend.any():
+        shapes = [*shapes, 1 - along**2]
+        uncertain = [*uncertain, np.maximum(measured.bend, _NO_BEND * measured.zero)]
+    nuisances = np.concatenate([x[:, None, None] * fit.whitening for x in shapes], axis=2)
+    shared = [i for i, kind in enumerate(fit.kinds) if kind.name == LAG]  # one pass shows none
+    known = np.concatenate(uncertain)
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
         for kind, column in zip(fit.kinds, jacobian.T, strict=True):
@@ -326,7 +343,9 @@ def _knowing_the_noise(
                 raise InputError("unknowns", kind.called, allowed, "leave it out")
         by_number = jacobian.reshape(-1, len(CLAMP_READINGS), len(numbers))
         left = -fit.misses(numbers).reshape(-1, len(CLAMP_READINGS))
-        found = estimate(left, by_number, nuisances, uncertain, least, rows=measured.rows)
+        found = estimate(
+            left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
+        )
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)
         if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined

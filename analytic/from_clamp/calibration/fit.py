@@ -134,8 +134,9 @@ class LeastSquaresFit(ABC):
         """The cases of the sweeps to either side, and the foot positions of their stations."""
         sought = self.sought(numbers)
         foot_x = self.measured.foot_x - sought.offset
+        late = {"left": -sought.lag, "right": sought.lag}
         return [
-            (replace(sought.case, sweep=sweep), foot_x[here])
+            (replace(sought.case, sweep=sweep), foot_x[here] - late[sweep.direction])
             for sweep, here in self._sweeps.items()
         ]
 

@@ -1,11 +1,17 @@
 """The stations of a measured sweep that a calibration is from."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.from_clamp.noise import checked_noise, largest, reading_noise, zero_uncertainty
+from analytic.from_clamp.noise import (
+    bend_uncertainty,
+    checked_noise,
+    largest,
+    reading_noise,
+    zero_uncertainty,
+)
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction
@@ -29,6 +35,7 @@ class Measured:
     spread: Floats  # shape (4,); Standard deviation of the foot position and of the three readings
     rows: tuple[int, ...]  # how many stations each pass has
     zero: Floats  # shape (3,); standard uncertainty of the zero of each reading
+    bend: Floats  # shape (3,); the same of a bend of its drift, in the middle of a pass
 
     @classmethod
     def of(
@@ -46,6 +53,7 @@ class Measured:
             np.sqrt(np.mean([one.spread**2 for one in each], axis=0)),
             tuple(n for one in each for n in one.rows),
             np.sqrt(np.mean([one.zero**2 for one in each], axis=0)),
+            np.sqrt(np.mean([one.bend**2 for one in each], axis=0)),
         )
 
     @property
@@ -73,7 +81,7 @@ class Measured:
     def at(self, kept: Booleans) -> "Measured":
         """Some of the stations."""
         rows = tuple(int(kept[one].sum()) for one in self.passes)
-        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread, rows, self.zero)
+        return replace(self, foot_x=self.foot_x[kept], readings=self.readings[:, kept], rows=rows)
 
 
 def check_size(readings: Readings, case: Case) -> None:
@@ -117,7 +125,7 @@ def measured_under_load(
         raise InputError(name, len(order), allowed, remedy)
     found = np.stack([readings.values(n)[order] for n in CLAMP_READINGS])
     zero = zero_uncertainty(readings, np.abs(found).max(axis=1))
-    return Measured(x[order], found, spread, (len(order),), zero)
+    return Measured(x[order], found, spread, (len(order),), zero, bend_uncertainty(readings))
 
 
 def _kept(readings: Readings, loaded: Integers) -> Integers:

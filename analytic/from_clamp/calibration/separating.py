@@ -45,7 +45,7 @@ def undistinguished(fit: VibrissaFit, numbers: Floats, covariance: Floats) -> Un
     kept = np.abs(worst) > _PART * np.abs(worst).max()
     units = [kind.unit(fit.given) for kind in fit.kinds]
     along = {
-        kind.name or "offset": float(DOUBLE_SIDED_95 * unit * part)
+        kind.name: float(DOUBLE_SIDED_95 * unit * part)
         for kind, unit, part, large in zip(fit.kinds, units, worst, kept, strict=True)
         if large
     }
@@ -99,6 +99,7 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
                 fit.measured.spread,
                 (len(table),),
                 fit.measured.zero,
+                fit.measured.bend,
             )
             yield name, VibrissaFit(measured, replace(changed, sweep=sweep), fit.kinds)
         except (InputError, ArithmeticError, ValueError):

@@ -14,6 +14,11 @@ _MOST_BENT = 1.5  # 1/L, at rest
 _MOST_RIGID = 100.0  # times what the readings' magnitudes suggest
 _MOST_LEANT = 0.5  # rad
 _FARTHEST = 0.3  # L
+_LONGEST_LAG = 0.1  # L
+
+LAG = "lag"
+OF_THE_FOOT = ("offset", LAG)
+"""Unknowns that are none of the case but of its foot position."""
 
 
 @dataclass(frozen=True)
@@ -22,6 +27,7 @@ class Sought:
 
     case: Case
     offset: float = 0.0  # foot positions of the readings less the true ones [length]
+    lag: float = 0.0  # the way that the foot goes until a reading is there [length]
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Number:
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown(Number):
-    """A fitted quantity of the case; its name is of `QUANTITIES`, or empty for the offset."""
+    """A fitted quantity of the case, by its name in `QUANTITIES`, or an offset or a lag."""
 
     unit: Callable[[Case], float]  # of the quantity, in the case as it was given
     # Whether the quantity itself can be as at either end: a clamp can be rigid.
@@ -52,7 +58,7 @@ class Unknown(Number):
     @property
     def called(self) -> str:
         """What a user calls it."""
-        return self.said or self.name or "offset"
+        return self.said or self.name
 
     def now(self, sought: Sought, given: Case) -> float:
         """The number, of what is tried."""
@@ -61,7 +67,9 @@ class Unknown(Number):
     def tried(self, sought: Sought, given: Case, number: float) -> Sought:
         """What is tried, with another such number."""
         value = number * self.unit(given)
-        if not self.name:
+        if self.name == LAG:
+            return replace(sought, lag=value)
+        if self.name in OF_THE_FOOT:
             return replace(sought, offset=value)
         return replace(sought, case=QUANTITIES[self.name].at(sought.case, value))
 
@@ -70,7 +78,9 @@ class Unknown(Number):
         return self._of(sought, self.said or self.name)
 
     def _of(self, sought: Sought, name: str) -> float:
-        return QUANTITIES[name].value(sought.case) if name else sought.offset
+        if name in OF_THE_FOOT:
+            return float(getattr(sought, name))
+        return QUANTITIES[name].value(sought.case)
 
 
 UNKNOWNS: dict[str, Unknown] = {
@@ -116,13 +126,14 @@ UNKNOWNS: dict[str, Unknown] = {
         "friction", 0.0, 1.0, (0.1, 0.4), unit=lambda given: 1.0, possible=(True, False)
     ),
     "offset": Unknown(
-        "", -_FARTHEST, _FARTHEST, (-0.05, 0.05), unit=lambda given: given.beam.length
+        "offset", -_FARTHEST, _FARTHEST, (-0.05, 0.05), unit=lambda given: given.beam.length
     ),
+    LAG: Unknown(LAG, -_LONGEST_LAG, _LONGEST_LAG, unit=lambda given: given.beam.length),
 }
 """By name. The rigidity is that at the clamp; what varies along the vibrissa goes along with it.
 
-The clamp is fitted by its compliance, of which a rigid one is an end, and ``offset`` is by how much
-``foot_x`` is too large.
+The clamp is fitted by its compliance, of which a rigid one is an end, ``offset`` is by how much
+``foot_x`` is too large, and ``lag`` by how much it is too large along the motion.
 """
 
 

@@ -1,6 +1,6 @@
 """The object as a whole: the contour of a family that explains the clamp's readings best."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from analytic.from_clamp.calibration.calibrate import (
 )
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
-from analytic.from_clamp.calibration.unknowns import Sought
+from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, Unknown
 from analytic.from_clamp.correlated import Estimated
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -83,17 +83,33 @@ class FittedObject(Fitted):
 
 
 class ObjectFit(LeastSquaresFit):
-    """An object of a family, touched by a vibrissa that is known."""
+    """An object of a family, touched by a vibrissa that is known but for some unknowns."""
 
-    def __init__(self, measured: Measured, given: Case, family: Family, start: Floats) -> None:
-        super().__init__(measured, given, family.kinds)
-        self.family = family
-        self.start = np.clip(start, self.lowest, self.highest)
+    def __init__(
+        self,
+        measured: Measured,
+        given: Case,
+        family: Family,
+        start: Floats,
+        beside: Sequence[Unknown],
+    ) -> None:
+        super().__init__(measured, given, (*family.kinds, *beside))
+        self.family, self.beside = family, beside
+        others = [one.now(Sought(given), given) for one in beside]
+        self.start = np.clip(np.append(start, others), self.lowest, self.highest)
+
+    def of_object(self, numbers: Floats) -> Floats:
+        """The numbers of the contour alone."""
+        return numbers[: len(self.family.kinds)]
 
     def sought(self, numbers: Floats) -> Sought:
         """The vibrissa past the object of these numbers."""
-        profile = self.family.profile(numbers).scaled(self.given.beam.length)
-        return Sought(replace(self.given, profile=profile))
+        profile = self.family.profile(self.of_object(numbers)).scaled(self.given.beam.length)
+        found = Sought(replace(self.given, profile=profile))
+        others = numbers[len(self.family.kinds) :].tolist()
+        for one, number in zip(self.beside, others, strict=True):
+            found = one.tried(found, self.given, number)
+        return found
 
 
 def fit_object(
@@ -124,7 +140,8 @@ def fit_object(
     Returns
     -------
     FittedObject
-        Parameters, intervals, and a band about the contour.
+        Parameters, intervals, and a band about the contour. Passes both ways have a ``lag``, too:
+        how far the foot goes until a reading is there, as `calibrate` finds it.
 
     Raises
     ------
@@ -134,26 +151,42 @@ def fit_object(
     """
     check_family(family, FAMILIES)
     passes = as_passes(readings)
+    fit = families_fitted(passes, noise, late_if_both_ways(passes))
+    return likeliest(
+        family,
+        FAMILIES,
+        fit,
+        "several objects, a corner, friction, or a vibrissa that is not as stated",
+    )
+
+
+def late_if_both_ways(passes: Sequence[Readings]) -> tuple[str, ...]:
+    """What passes both ways show of their readings, which would be misread without it."""
+    return (LAG,) if len({one.runs_right for one in passes}) > 1 else ()
+
+
+def families_fitted(
+    passes: Sequence[Readings], noise: Mapping[str, float] | None, beside: Sequence[str]
+) -> Callable[[str], FittedObject]:
+    """The fit of each family by its name, beside some unknowns of the vibrissa and its foot."""
     x, y, angles = _contacts(passes)
+    others = [UNKNOWNS[name] for name in beside]
     known = families(angles)
     tried: dict[str, tuple[ObjectFit, Floats, float, Estimated]] = {}
 
     def fitted(name: str) -> tuple[ObjectFit, Floats, float, Estimated]:
         if name not in tried:
             one = known[name]
-            simpler = [fitted(other)[1] for other in one.simpler] or [_circle_through(x, y)]
-            measured, case = _measured(passes, noise, len(one.kinds))
-            fits = [ObjectFit(measured, case, one, one.start(numbers)) for numbers in simpler]
+            simpler = [_circle_through(x, y)]
+            if one.simpler:
+                simpler = [fit.of_object(at) for fit, at, *_ in map(fitted, one.simpler)]
+            measured, case = _measured(passes, noise, len(one.kinds) + len(others))
+            fits = [ObjectFit(measured, case, one, one.start(at), others) for at in simpler]
             nearest = min(fits, key=lambda fit: float(np.sum(fit.misses(fit.start) ** 2)))
             tried[name] = fitted_to_noise(nearest, noise is not None)
         return tried[name]
 
-    return likeliest(
-        family,
-        FAMILIES,
-        lambda name: _object(*fitted(name), angles),
-        "several objects, a corner, friction, or a vibrissa that is not as stated",
-    )
+    return lambda name: _object(*fitted(name), angles)
 
 
 def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
@@ -208,11 +241,13 @@ def _measured(
 def _object(
     fit: ObjectFit, numbers: Floats, misfit: float, known: Estimated, angles: Floats
 ) -> FittedObject:
-    long, kinds = fit.given.beam.length, fit.kinds
+    long, kinds, size = fit.given.beam.length, fit.kinds, len(fit.family.kinds)
     deviations = np.sqrt(np.diag(known.covariance))
     found = {}
     for kind, number, deviation in zip(kinds, numbers, deviations, strict=True):
         unit = 1.0 if kind.name.startswith(("exponent", "log")) else long
+        if isinstance(kind, Unknown):
+            unit = kind.unit(fit.given)
         half = DOUBLE_SIDED_95 * deviation
         found[kind.name] = Estimate(
             *(float(unit * x) for x in (number, number - half, number + half))
@@ -226,7 +261,9 @@ def _object(
         case=fit.sought(numbers).case,
         band={
             name: long * x if name != "slope_angle" else x
-            for name, x in _band(fit.family, numbers, known.covariance, angles).items()
+            for name, x in _band(
+                fit.family, fit.of_object(numbers), known.covariance[:size, :size], angles
+            ).items()
         },
         misfit=misfit,
         explains=explained_by_noise(misfit, data - len(kinds)),

@@ -224,13 +224,13 @@ def _flat() -> InputError:
         "contacts",
         "in one line or plane, within noise",
         "of a body with a volume",
-        "sweep along other lines past it, too; with noise fit a sphere, ellipsoid or cylinder",
+        "give several sweeps along different lines past it, or fit a sphere, ellipsoid or cylinder",
     )
 
 
 def _outer(known: _Touched, middle: Floats) -> tuple[Polyhedron, Floats]:
     """What surely has the part of the body in it that is within a box, and the box."""
-    from scipy.spatial import HalfspaceIntersection
+    from scipy.spatial import HalfspaceIntersection, QhullError
 
     low, high = known.points.min(axis=0), known.points.max(axis=0)
     around = _AROUND * float((high - low).max())
@@ -245,7 +245,15 @@ def _outer(known: _Touched, middle: Floats) -> tuple[Polyhedron, Floats]:
             -np.concatenate([heights, box[1], -box[0]]),
         ]
     )
-    cut = HalfspaceIntersection(planes, middle).intersections
+    try:
+        cut = HalfspaceIntersection(planes, middle).intersections
+    except QhullError as error:
+        raise InputError(
+            "contacts",
+            "of which some planes cut off what is between all of them",
+            "of one convex body",
+            "check the frame, signs and friction, and take each body alone",
+        ) from error
     return polyhedron(cut[np.isfinite(cut).all(axis=1)]), box
 
 

@@ -119,7 +119,9 @@ def test_what_says_too_little_is_a_line(sweeps):
         convex_band(idle)
     straight = FootPath([[1.3, 0.0], [-1.3, 0.0]], stations=60)
     flat = solve_space(SpatialCase(body=sphere(1.0, (0.0, 1.4, 0.0)), path=straight))
-    with pytest.raises(InputError, match=r"contacts = in one line or plane.*other lines"):
+    with pytest.raises(
+        InputError, match=r"contacts = in one line or plane.*several sweeps along different lines"
+    ):
         convex_band(flat)
     noise = sizes(sweeps["sphere"], 0.03)
     with pytest.raises(InputError, match="within noise"):

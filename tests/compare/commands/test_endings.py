@@ -114,6 +114,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
         _, error = process.communicate(timeout=60)
     assert process.returncode == 2
     assert len(error.splitlines()) == 1, error
+    assert "of 5000 runs in out: the same command does the others" in error
     assert list(tmp_path.rglob(".*")) == []
     assert len(pd.read_parquet(tmp_path / "out" / TABLE_FILE)) >= 5
     wait_for_end(workers)

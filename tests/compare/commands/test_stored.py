@@ -104,3 +104,13 @@ def test_an_engines_files_keep_their_beam(tmp_path, sweep):
     done = vibrissa(*words, "--beam", "other.toml", cwd=tmp_path)
     assert done.returncode == 2
     assert "--beam = other.toml: must be beside a file that no engine wrote" in done.stderr
+
+
+@pytest.mark.parametrize("page", ["report.html", "engines.html", "side-by-side.html"])
+def test_a_page_of_somebody_else_is_not_replaced(tmp_path, page):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / page).write_text("<p>my own</p>")
+    for words in (("run", "catenary", "--engine", "exact"), ("verify",)):
+        done = vibrissa(*words, "--out", "out", cwd=tmp_path)
+        done.refused(f"output = out/{page}: must be free, or from an earlier run")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [page]

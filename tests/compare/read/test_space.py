@@ -93,7 +93,7 @@ def test_a_case_of_the_other_kind_is_sent_to_its_command(tmp_path):
         load_space_job("catenary")
     (tmp_path / "ball.toml").write_text(BALL)
     with pytest.raises(
-        InputError, match=r"body = given: must be left out in the plane; `vibrissa run`"
+        InputError, match=r"\[body\] = given: must be a \[profile\].*`vibrissa run`"
     ):
         load_job(str(tmp_path / "ball.toml"))
 

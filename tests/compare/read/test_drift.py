@@ -1,0 +1,54 @@
+"""A zero that drifts along a curve: planted, found, and known as well as is said."""
+
+import numpy as np
+import pytest
+
+from compare.read.drift import bent, zero_of
+
+ROWS, NOISE, WAY = 600, 0.01, np.linspace(0.0, 1.0, 600)
+FREE = {"free_before": WAY < 0.08, "free_after": WAY > 0.92}
+SHAPES = {
+    "line": lambda u: 0.03 * u,
+    "warming": lambda u: 0.06 * (1 - np.exp(-4 * u)),
+    "there and back": lambda u: 0.12 * u * (1 - u),
+}
+
+
+def passes(shape, count, seed):
+    """Zeros of passes without a contact, and what is off the truth in the middle of each."""
+    rng, true = np.random.default_rng(seed), SHAPES[shape](WAY)
+    values = true + NOISE * rng.standard_normal((count, 3, ROWS))
+    zeros = [zero_of(WAY, one, FREE, "pass") for one in values]
+    return zeros, bent(zeros), true
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape):
+    """In the middle of the way, where a line misses a curve most; 10 passes, 30 rigs."""
+    errors, missed = [], []
+    for seed in range(30):
+        zeros, curves, true = passes(shape, 10, seed)
+        middle = ROWS // 2
+        for zero, curve in zip(zeros, curves, strict=True):
+            known = np.hypot(zero.uncertainty, 2 * curve.uncertainty)
+            errors.append((zero.line + curve.away - true)[:, middle] / known)
+            missed.append((zero.line - true)[:, middle])
+    # At most what one is to expect, and of a curve that is taken off not much less.
+    assert np.mean(np.square(errors)) < 1.2
+    if shape != "line":
+        assert all(curve.shows for curve in curves)
+        assert np.sqrt(np.mean(np.square(missed))) > 0.01  # what a line leaves
+
+
+def test_a_straight_drift_stays_a_line():
+    shown = [passes("line", 10, seed)[1][0].shows for seed in range(40)]
+    assert np.mean(shown) < 0.1
+
+
+def test_one_stretch_that_drifts_says_so_and_noise_does_not():
+    rng, only = np.random.default_rng(0), {"free_before": WAY < 0.08}
+    noise = NOISE * rng.standard_normal((3, ROWS))
+    still = zero_of(WAY, noise, only, "pass")
+    drifting = zero_of(WAY, noise + 0.6 * WAY, only, "pass")
+    assert not still.ahead.any()
+    np.testing.assert_allclose(drifting.ahead, 0.6, rtol=0.3)
