@@ -11,6 +11,7 @@ BIN_ENGINES := .venv-engines/bin
 PARALLEL := -n auto --dist worksteal
 
 STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise methods-deflection methods-noise
+EXTRAS := drake exudyn pinocchio dart pyelastica warp mjx
 CASES := catenary parabola two-circles shallow-catenary tip-only
 
 # One folder a run; a run writes its report last. A beam that disagrees is a finding, not a failure.
@@ -132,10 +133,19 @@ test-floors:     ## the fast tests with the oldest dependencies that are allowed
 	.venv-floors/bin/python -m pytest $(PARALLEL) -o filterwarnings= $(ARGS) \
 	  --deselect tests/figures/test_reference_tables.py::test_the_tables_are_made_again_bit_for_bit
 
-install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras
+install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras, for the league table
 
-test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
-	$(BIN_ENGINES)/python -m pytest $(PARALLEL) tests/engines $(ARGS)
+# An extra may lean on what another one brings: each is alone, in a copy (of links) of what all need.
+test-engines:    ## the tests of the other engines, each in an environment of its own; ARGS="-m slow" for more
+	$(PYTHON) -m venv --clear .venv-alone/base
+	.venv-alone/base/bin/python -m pip install --quiet --disable-pip-version-check --editable . pytest pytest-xdist
+	set -e; for extra in $(EXTRAS); do \
+	  alone=.venv-alone/$$extra; rm -rf $$alone; cp -al .venv-alone/base $$alone; \
+	  $$alone/bin/python -m pip install --quiet --disable-pip-version-check --editable ".[$$extra]" \
+	    || { echo "$$extra: cannot be installed here"; continue; }; \
+	  echo "$$extra alone:"; \
+	  $$alone/bin/python -m pytest --quiet $(PARALLEL) tests/engines/*/ tests/engines/test_twins.py \
+	    tests/engines/test_real_split.py $(ARGS); done
 
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \
@@ -146,7 +156,7 @@ versions: install install-mujoco3    ## the beams of both MuJoCo versions and th
 	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
-	rm -rf .venv .venv-mujoco3 .venv-engines .venv-python .venv-floors .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-mujoco3 .venv-engines .venv-alone .venv-python .venv-floors .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	rm -rf site htmlcov .coverage* dist results/*/
 
 results/runs/%-chain/report.html: BEAM = chain

@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, circle, named_case, polygon
-from engines import find_engine, list_engines
+from engines import find_engine
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.obstacles.prism import Prism
+from tests.engines.needs import needs
 
 SMOOTH = Settings(obstacle="primitive")
 
 
-@pytest.fixture(params=["drake", "pinocchio"])
+@pytest.fixture(params=[("drake", "drake"), ("pinocchio", "pin")], ids=lambda twin: twin[0])
 def name(request) -> str:
     """Of a twin that is there."""
-    found = {one.name: one for one in list_engines()}[request.param]
-    if found.trouble is not None:
-        pytest.skip(found.trouble)
-    return request.param
+    twin, distribution = request.param
+    needs(distribution)
+    return twin
 
 
 def apart(name: str, case: Case, settings: Settings) -> tuple[dict[str, float], float]:

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, named_case, polygon
-from mujoco_models import Settings, simulate_sweep
-
-pytest.importorskip("dartpy", reason="DART is an extra: pip install '.[dart]'")
-
 from engines import find_engine
+from mujoco_models import Settings, simulate_sweep
+from tests.engines.needs import needs
+
+needs("dartpy")
 
 SMOOTH = Settings(obstacle="primitive", segments=20)
 

@@ -18,11 +18,11 @@ from analytic import (
 )
 from analytic.problem.contours.polygon import Polygon
 from compare import compare
-from mujoco_models import Settings
-
-pytest.importorskip("exudyn", reason="Exudyn is an extra: pip install '.[exudyn]'")
-
 from engines import find_engine
+from mujoco_models import Settings
+from tests.engines.needs import needs
+
+needs("exudyn")
 
 SETTINGS = Settings(segments=40)
 NAMES = ("catenary", "two-circles", "shallow-catenary", "tip-only")

@@ -16,11 +16,11 @@ from analytic import (
     polygon,
     solve_sweep,
 )
-from mujoco_models import Settings
-
-pytest.importorskip("elastica", reason="PyElastica is an extra: pip install '.[pyelastica]'")
-
 from engines import find_engine
+from mujoco_models import Settings
+from tests.engines.needs import needs
+
+needs("pyelastica")
 
 TURN = 0.1 + 2 * np.pi * np.arange(6) / 6
 HEXAGON = polygon(np.column_stack([0.5 * np.cos(TURN), 0.9 + 0.5 * np.sin(TURN)]))
