@@ -12,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 
 _POINTS = 4000  # of the contour; between them arcs: right to 1e-10 of the radius of curvature
+_DEEP = 2  # radii of the vibrissa
 _STRAIGHT = 1e-9  # rad; a piece of contour that turns less
 
 
@@ -30,7 +31,7 @@ class Arcs(NamedTuple):
     centres: Floats
     # Shape (n,); Negative for a straight piece.
     radii: Floats
-    # How deep a contact can be: what is deeper than the vibrissa is thick is past the object.
+    # How deep a contact can be: what is deeper is past the object.
     deepest: float
 
     @classmethod
@@ -50,49 +51,54 @@ class Arcs(NamedTuple):
         centres = np.where(straight[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - inward)
         radii[straight] = -1.0
         tangents = np.column_stack([along, (ends * along).sum(axis=1)])
-        return cls(on.alpha, tangents, centres, radii, case.radius)
+        return cls(on.alpha, tangents, centres, radii, _DEEP * case.radius)
 
 
 @njit(cache=True)
 def touch(
-    nodes: Floats, foot_x: float, arcs: Arcs, stiffness: float, forces: Floats, places: Floats
-) -> int:
-    """Write what the contour does to elements and then to nodes; say to how many.
+    nodes: Floats, foot_x: float, arcs: Arcs, held: Booleans, depths: Floats, normals: Floats,
+    places: Floats,
+) -> None:  # fmt: skip
+    """Write how deep elements and then nodes are, 0 for what is spared; whereto, and where.
 
-    And where along the elements that is.
+    What is held counts even if it is outside: contacts that come and go between two iterations
+    would never end.
     """
-    count, found = nodes.shape[1] - 1, 0
-    forces[:] = 0.0
-    before = 0.0  # how deep the line of the element before is
+    count = nodes.shape[1] - 1
+    depths[:] = -np.inf
+    before, before_held = -1.0, False  # how deep the line of the element before is
     for i in range(count + 1):
-        line = -1.0
+        line, line_held = -1.0, False
         if i < count:
-            line = _beside(nodes[:, i], nodes[:, i + 1], foot_x, arcs, forces[:, i], places[i:])
-        if i > 0 and max(line, before) > 0:
+            line, along, right, up = _beside(nodes[:, i], nodes[:, i + 1], foot_x, arcs)
+            line_held = held[i]
+            if held[i] and not 0 < along < 1:
+                held[count + i + (along > 0)] = True
+            if 0 < along < 1 and (held[i] or line > 0) and line < arcs.deepest:
+                depths[i], places[i] = line, along
+                normals[0, i], normals[1, i] = right, up
+        k = count + i
+        if i > 0 and (max(line, before) > 0 or line_held or before_held or held[k]):
             depth, right, up = _depth(nodes[0, i] + foot_x, nodes[1, i], arcs)
-            if 0 < depth < arcs.deepest:
-                forces[0, count + i], forces[1, count + i] = depth * right, depth * up
-        before = line
+            if (depth > 0 or held[k]) and depth < arcs.deepest:
+                depths[k], normals[0, k], normals[1, k] = depth, right, up
+        before, before_held = line, line_held
     for i in range(count):
-        depth = np.hypot(forces[0, i], forces[1, i])
-        first = np.hypot(forces[0, count + i], forces[1, count + i])
-        last = np.hypot(forces[0, count + i + 1], forces[1, count + i + 1])
-        if depth == 0 or depth <= max(first, last):
-            forces[:, i] = 0.0
-        elif max(first, last) > 0:
-            forces[:, count + i + (last > first)] = 0.0
+        first, last = depths[count + i], depths[count + i + 1]
+        if depths[i] <= max(first, last):
+            depths[i] = -np.inf
+        else:
+            depths[count + i + (last > first)] = -np.inf
     for i in range(2 * count + 1):
-        for k in range(2):
-            forces[k, i] *= stiffness
-        found += forces[0, i] != 0 or forces[1, i] != 0
-    return found
+        if depths[i] == -np.inf:
+            depths[i] = 0.0
 
 
 @njit(cache=True)
 def _beside(
-    begin: Floats, end: Floats, foot_x: float, arcs: Arcs, depths: Floats, place: Floats
-) -> float:
-    """How deep the line of an element is; as a vector, and where, if its own part of that is."""
+    begin: Floats, end: Floats, foot_x: float, arcs: Arcs
+) -> tuple[float, float, float, float]:
+    """How deep the line of an element is, where along it, and the normal there."""
     run, rise = end[0] - begin[0], end[1] - begin[1]
     length = np.hypot(run, rise)
     right, up = rise / length, -run / length
@@ -103,10 +109,7 @@ def _beside(
     bulge = max(arcs.radii[arc], 0.0)
     to_x = arcs.centres[arc, 0] + bulge * right - begin[0] - foot_x
     to_y = arcs.centres[arc, 1] + bulge * up - begin[1]
-    along, depth = (to_x * run + to_y * rise) / length**2, to_x * right + to_y * up
-    if 0 < along < 1 and 0 < depth < arcs.deepest:
-        depths[0], depths[1], place[0] = depth * right, depth * up, along
-    return depth
+    return to_x * right + to_y * up, (to_x * run + to_y * rise) / length**2, right, up
 
 
 @njit(cache=True)

@@ -66,12 +66,13 @@ def test_contact_forces_are_the_gradient_of_one_energy(profile):
     from engines.pyelastica.contact import Arcs, push, touch
 
     arcs, count, touched = Arcs.of(Case(profile=profile)), 6, 0
-    places = np.zeros(count)
+    places, held = np.zeros(count), np.zeros(2 * count + 1, bool)
 
     def pushed(nodes: np.ndarray) -> np.ndarray:
-        forces, outer = np.zeros((2, 2 * count + 1)), np.zeros((2, count + 1))
-        touch(nodes, 0.0, arcs, 1.0, forces, places)
-        push(outer, forces, places)
+        depths, normals = np.zeros(2 * count + 1), np.zeros((2, 2 * count + 1))
+        outer = np.zeros((2, count + 1))
+        touch(nodes, 0.0, arcs, held, depths, normals, places)
+        push(outer, depths * normals, places)
         return outer.ravel()
 
     random = np.random.default_rng(1)
