@@ -1,10 +1,10 @@
-"""A contact that PyElastica has not: a line of nodes against any convex contour, consistently.
+"""A contact that PyElastica has not: a line of straight elements against any convex contour.
 
-The contour, moved out by the vibrissa's radius, is a chain of arcs. Every node in it is pushed
-along its normal. An element that it is tangent to, deeper than its nodes are, is pushed there at
-right angles, and both its nodes bear what the lever says; the deeper one is then spared. So force
-and place come out of one energy, by the square of depths, and do not jump where a contact goes from
-element to node.
+The contour, moved out by the vibrissa's radius, is a chain of arcs. Every point of the line in it
+is pushed out along the normal there, in proportion to how deep it is, and an element's nodes bear
+what the lever says. So forces are the gradient of one energy, the integral of squared depths along
+the line. They change smoothly wherever a contact goes: from node to element, around a corner, or
+along an edge on which whole elements lie.
 """
 
 from typing import NamedTuple
@@ -12,27 +12,27 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 
 _POINTS = 4000  # of the contour; between them arcs: right to 1e-10 of the radius of curvature
-_DEEP = 2  # radii of the vibrissa
 _STRAIGHT = 1e-9  # rad; a piece of contour that turns less
+_FINE = 1e-13  # L; of the ends of a contact
+_HALVINGS = 30
+_ITERATIONS = 50  # most take five
+# Gauss's rule for a contact's length: exact for a circle, and for a node in an edge's either side.
+_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 class Arcs(NamedTuple):
     """The line that the axis of the vibrissa feels, from left to right; L = 1."""
 
-    # Shape (n + 1,); Slope angle at the ends of the arcs.
-    alpha: Floats
     # Shape (n + 1, 3); The tangents there, and where along them those ends are.
     tangents: Floats
     # Shape (n, 2); Centre, or where a straight piece begins.
     centres: Floats
     # Shape (n,); Negative for a straight piece.
     radii: Floats
-    # How deep a contact can be: what is deeper is past the object.
-    deepest: float
 
     @classmethod
     def of(cls, case: Case) -> "Arcs":
@@ -51,65 +51,76 @@ class Arcs(NamedTuple):
         centres = np.where(straight[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - inward)
         radii[straight] = -1.0
         tangents = np.column_stack([along, (ends * along).sum(axis=1)])
-        return cls(on.alpha, tangents, centres, radii, _DEEP * case.radius)
+        return cls(tangents, centres, radii)
+
+
+class Pressed(NamedTuple):
+    """Points of every element where it is pushed; depths are 0 where it is not."""
+
+    # Shape (n_elements, n_points) each; how deep, where along the element, and for which share.
+    depths: Floats
+    places: Floats
+    shares: Floats
+    # Shape (2, n_elements, n_points); Whereto.
+    normals: Floats
+
+    @classmethod
+    def none(cls, elements: int) -> "Pressed":
+        """To be written by `press`."""
+        shape = elements, len(_GAUSS[0])
+        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros((2, *shape)))
 
 
 @njit(cache=True)
-def touch(
-    nodes: Floats, foot_x: float, arcs: Arcs, held: Booleans, depths: Floats, normals: Floats,
-    places: Floats,
-) -> None:  # fmt: skip
-    """Write how deep elements and then nodes are, 0 for what is spared; whereto, and where.
+def press(nodes: Floats, foot_x: float, arcs: Arcs, pressed: Pressed) -> None:
+    """Write where a line of nodes is in the contour."""
+    depths, places, shares, normals = pressed
+    depths[:] = 0.0
+    for i in range(len(depths)):
+        x, y = nodes[0, i] + foot_x, nodes[1, i]
+        run, rise = nodes[0, i + 1] - nodes[0, i], nodes[1, i + 1] - nodes[1, i]
+        first, last = _depth(x, y, arcs)[0], _depth(x + run, y + rise, arcs)[0]
+        if first + last + np.hypot(run, rise) <= 0:
+            continue
+        if first <= 0 and last <= 0 and not _dips(x, y, run, rise, arcs):
+            continue
+        begin = 0.0 if first > 0 else _end(x, y, run, rise, arcs)
+        end = 1.0 if last > 0 else 1 - _end(x + run, y + rise, -run, -rise, arcs)
+        for j in range(depths.shape[1]):
+            place = (begin + end + (end - begin) * _GAUSS[0][j]) / 2
+            depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+            depths[i, j], places[i, j] = max(depth, 0.0), place
+            shares[i, j] = (end - begin) * _GAUSS[1][j] / 2
+            normals[0, i, j], normals[1, i, j] = right, up
 
-    What is held counts even if it is outside: contacts that come and go between two iterations
-    would never end.
-    """
-    count = nodes.shape[1] - 1
-    depths[:] = -np.inf
-    before, before_held = -1.0, False  # how deep the line of the element before is
-    for i in range(count + 1):
-        line, line_held = -1.0, False
-        if i < count:
-            line, along, right, up = _beside(nodes[:, i], nodes[:, i + 1], foot_x, arcs)
-            line_held = held[i]
-            if held[i] and not 0 < along < 1:
-                held[count + i + (along > 0)] = True
-            if 0 < along < 1 and (held[i] or line > 0) and line < arcs.deepest:
-                depths[i], places[i] = line, along
-                normals[0, i], normals[1, i] = right, up
-        k = count + i
-        if i > 0 and (max(line, before) > 0 or line_held or before_held or held[k]):
-            depth, right, up = _depth(nodes[0, i] + foot_x, nodes[1, i], arcs)
-            if (depth > 0 or held[k]) and depth < arcs.deepest:
-                depths[k], normals[0, k], normals[1, k] = depth, right, up
-        before, before_held = line, line_held
-    for i in range(count):
-        first, last = depths[count + i], depths[count + i + 1]
-        if depths[i] <= max(first, last):
-            depths[i] = -np.inf
+
+@njit(cache=True)
+def _dips(x: float, y: float, run: float, rise: float, arcs: Arcs) -> bool:
+    """Whether an element is in the contour whose ends are not: depth is concave along it."""
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        place = (low + high) / 2
+        depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+        if depth > 0:
+            return True
+        if right * run + up * rise < 0:
+            low = place
         else:
-            depths[count + i + (last > first)] = -np.inf
-    for i in range(2 * count + 1):
-        if depths[i] == -np.inf:
-            depths[i] = 0.0
+            high = place
+    return False
 
 
 @njit(cache=True)
-def _beside(
-    begin: Floats, end: Floats, foot_x: float, arcs: Arcs
-) -> tuple[float, float, float, float]:
-    """How deep the line of an element is, where along it, and the normal there."""
-    run, rise = end[0] - begin[0], end[1] - begin[1]
-    length = np.hypot(run, rise)
-    right, up = rise / length, -run / length
-    slope = np.arctan2(rise, run)
-    if slope < -np.pi / 2:
-        slope += 2 * np.pi
-    arc = min(max(np.searchsorted(arcs.alpha, slope) - 1, 0), len(arcs.radii) - 1)
-    bulge = max(arcs.radii[arc], 0.0)
-    to_x = arcs.centres[arc, 0] + bulge * right - begin[0] - foot_x
-    to_y = arcs.centres[arc, 1] + bulge * up - begin[1]
-    return to_x * right + to_y * up, (to_x * run + to_y * rise) / length**2, right, up
+def _end(x: float, y: float, run: float, rise: float, arcs: Arcs) -> float:
+    """Where along an element a contact begins, by Newton's method from outside."""
+    place = 0.0
+    for _ in range(_ITERATIONS):
+        depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+        slope = -(right * run + up * rise)
+        if depth > -_FINE or slope <= 0:
+            break
+        place -= depth / slope
+    return min(place, 1.0)
 
 
 @njit(cache=True)
@@ -132,11 +143,14 @@ def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float]:
 
 
 @njit(cache=True)
-def push(outer: Floats, forces: Floats, places: Floats) -> None:
-    """Add the forces on elements, by the lever, and on nodes to those on nodes."""
-    count = len(places)
-    for k in range(2):
-        for i in range(count):
-            outer[k, i] += (1 - places[i]) * forces[k, i] + forces[k, count + i]
-            outer[k, i + 1] += places[i] * forces[k, i]
-        outer[k, count] += forces[k, 2 * count]
+def push(outer: Floats, stiffness: float, pressed: Pressed) -> None:
+    """Add the forces on elements, by the lever, to those on nodes."""
+    depths, places, shares, normals = pressed
+    for i in range(len(depths)):
+        for j in range(depths.shape[1]):
+            if depths[i, j] == 0:
+                continue
+            force = stiffness * shares[i, j] * depths[i, j]
+            for k in range(2):
+                outer[k, i] += (1 - places[i, j]) * force * normals[k, i, j]
+                outer[k, i + 1] += places[i, j] * force * normals[k, i, j]

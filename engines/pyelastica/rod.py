@@ -13,20 +13,25 @@ import elastica
 import numpy as np
 from scipy.linalg import solve_banded
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from engines.agreement import State, hinges
-from engines.pyelastica.contact import Arcs, push, touch
+from engines.pyelastica.contact import Arcs, Pressed, press, push
+
+DEBUG = False
 
 STIFFNESS = 1e5
 """S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 2e-4."""
-_CONTACT = 1e5  # EI/L^3; under the largest load, 20 EI/L^2, a contact is 2e-4 L deep
+_CONTACT = 1e9  # EI/L^4; of a length of the line; a load of 20 that the tip bears is 6e-4 L deep
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
-_NUDGE = 1e-7  # L, rad; for derivatives
+_NUDGE = 1e-8  # L, rad; for derivatives
 _TURN = 0.1  # rad; no element turns farther in an iteration
 _REST = 1e-7  # EI/L^2, EI/L; S/h rounds to 1e-9
-_HELD = 1e-3  # L; how far out a contact may be between two iterations
-_ITERATIONS = 20  # most rests take six
+_ITERATIONS = 30
+_OVERSHOT = 0.1
+_HALVINGS = 12
+_DEEP = 2e-3
+_STRIDE = 2  # radii
 
 
 class ElasticaRod:
@@ -39,9 +44,8 @@ class ElasticaRod:
         length = 1 / (elements - 0.5)
         self._radius, self._arcs = case.radius, Arcs.of(case)
         self._foot_x = float(case.foot_x[0]) / case.beam.length
-        # Of contacts of elements, and then of nodes.
-        self._depths, self._normals = np.zeros(2 * elements + 1), np.zeros((2, 2 * elements + 1))
-        self._held, self._places = np.zeros(2 * elements + 1, bool), np.zeros(elements)
+        self._stride = _STRIDE * case.radius
+        self._pressed, self._stiffness = Pressed.none(elements), _CONTACT * length
         self._rod = _rod(elements, length)
         # Of every element but the first: its first node's place, its heading; then the tip's place.
         upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
@@ -51,31 +55,61 @@ class ElasticaRod:
         self._near = np.nonzero(np.abs(index[:, None] - index) <= _REACH)
 
     def step(self, foot_x: float) -> None:
-        """To rest, or where no number is one: in ways shorter than contacts are deep at most."""
-        ways = int(np.ceil(2 * abs(foot_x - self._foot_x) / self._arcs.deepest))
+        """To rest, or where no number is one."""
+        loaded = self._pressed.depths.any()
+        ways = int(np.ceil(abs(foot_x - self._foot_x) / (0.1 if loaded else self._stride)))
         for place in np.linspace(self._foot_x, foot_x, 1 + max(ways, 1))[1:].tolist():
-            kept = self.keep()
-            self._foot_x, settled = place, self._settle()
-            if not settled:  # where a contact goes from one element to the next past a corner
-                self.go_back((place, *kept[1:]))
-        if not settled:
-            self._unknowns = np.full_like(self._unknowns, np.nan)
+            if ways:
+                self._lead(place)
+            self._left(self._unknowns)
+            if DEBUG: print("  lead", place, self._pressed.depths.max())
+            if self._pressed.depths.max() > _DEEP or not self._settle():
+                self._unknowns = np.full_like(self._unknowns, np.nan)
+                return
+
+    def _lead(self, foot_x: float) -> None:
+        """Move the foot, and the rod as it would go if all were linear."""
+        here, slopes = self._foot_x, self._slopes(self._left(self._unknowns))
+        ahead = here + np.copysign(_NUDGE, foot_x - here)
+        self._foot_x = ahead
+        after = self._left(self._unknowns)
+        self._foot_x = here
+        change = (after - self._left(self._unknowns)) / (ahead - here)
+        self._foot_x = foot_x
+        move = self._solve(slopes, change * (foot_x - here))
+        self._unknowns = self._unknowns + move
+
+    def _solve(self, slopes, left):
+        move = solve_banded((_REACH, _REACH), slopes, -left, check_finite=False)
+        return min(1.0, _TURN / max(np.abs(move[2::3]).max(), 1e-300)) * move
 
     def _settle(self) -> bool:
         """Whether it found a rest."""
-        for i in range(_ITERATIONS if np.isfinite(self._unknowns).all() else 0):
+        for _ in range(_ITERATIONS if np.isfinite(self._unknowns).all() else 0):
             left = self._left(self._unknowns)
+            if DEBUG: print("   ", _, np.abs(left).max(), self._pressed.depths.max())
             if np.abs(left).max() < _REST:
-                self._held = self._depths > 0
-                if not (self._depths < 0).any():
-                    return True
-                continue
-            outside = -_HELD if i else -np.inf  # the foot itself moves contacts, at first
-            self._held = (self._depths != 0) & (self._depths > outside)
-            move = solve_banded((_REACH, _REACH), self._slopes(left), -left, check_finite=False)
-            farthest = np.abs(move[2::3]).max()
-            self._unknowns = self._unknowns + min(1.0, _TURN / farthest) * move
+                return True
+            move = self._solve(self._slopes(left), left)
+            self._unknowns = self._unknowns + self._share(left, move) * move
         return False
+
+    def _share(self, left, move) -> float:
+        """How far along a move the forces do work."""
+        work = left @ move
+        if work < 0:
+            if DEBUG: print("    uphill", work)
+            return 1.0
+        low, high = 0.0, 1.0
+        share = 1.0
+        for _ in range(_HALVINGS):
+            at = self._left(self._unknowns + share * move) @ move
+            if DEBUG: print("        ", share, at / work)
+            if abs(at) < _OVERSHOT * work or (share == 1 and at > 0):
+                return share
+            low, high = (share, high) if at > 0 else (low, share)
+            share = (low + high) / 2
+        return share
 
     def _left(self, unknowns: Floats) -> Floats:
         """The forces on nodes and torques on elements that nothing balances."""
@@ -87,10 +121,9 @@ class ElasticaRod:
         directors[1, 0, 1:], directors[1, 1, 1:] = cos, sin
         directors[2, 0, 1:], directors[2, 1, 1:] = -sin, cos
         rod.compute_internal_forces_and_torques(0.0)
-        held, depths, normals, at = self._held, self._depths, self._normals, self._places
-        touch(places, self._foot_x, self._arcs, held, depths, normals, at)
+        press(places, self._foot_x, self._arcs, self._pressed)
         outer = rod.internal_forces[:2]
-        push(outer, _CONTACT * depths * normals, at)
+        push(outer, self._stiffness, self._pressed)
         left[::3], left[1::3], left[2:-1:3] = (
             outer[0, 1:],
             outer[1, 1:],
@@ -112,9 +145,12 @@ class ElasticaRod:
         rod = self._rod
         self._left(self._unknowns)
         nodes = rod.position_collection[:2].T
-        felt = self._depths > 0
-        push = self._normals.T[felt]
-        axis = np.vstack([nodes[:-1] + self._places[:, None] * np.diff(nodes, axis=0), nodes])
+        pressed = self._pressed
+        felt = pressed.depths > 0
+        push = pressed.normals[:, felt].T
+        element, _ = np.nonzero(felt)
+        axis = nodes[element] + pressed.places[felt, None] * (nodes[element + 1] - nodes[element])
+        size = self._stiffness * pressed.shares[felt] * pressed.depths[felt]
         # Directors are in rows; a rod of PyElastica's gets thinner where it is longer.
         fx, fy, _ = rod.director_collection[:, :, 0].T @ rod.internal_stress[:, 0]
         fx, fy = fx / rod.dilatation[0], fy / rod.dilatation[0]
@@ -126,19 +162,18 @@ class ElasticaRod:
         return State(
             nodes[1:].copy(),
             -np.array([fx, fy, moment + x * fy - y * fx]),
-            axis[felt] - self._radius * push,
-            _CONTACT * self._depths[felt, None] * push,
+            axis - self._radius * push,
+            size[:, None] * push,
             turns,
         )
 
-    def keep(self) -> tuple[float, Floats, Booleans]:
+    def keep(self) -> tuple[float, Floats]:
         """Places and headings; of the foot, too."""
-        return self._foot_x, self._unknowns, self._held.copy()
+        return self._foot_x, self._unknowns
 
-    def go_back(self, kept: tuple[float, Floats, Booleans]) -> None:
+    def go_back(self, kept: tuple[float, Floats]) -> None:
         """To the same."""
-        self._foot_x, self._unknowns, held = kept
-        self._held = held.copy()
+        self._foot_x, self._unknowns = kept
 
 
 def _rod(elements: int, length: float) -> Any:  # noqa: ANN401
