@@ -21,6 +21,7 @@ _FINE = 1e-13  # L; of the ends of a contact
 _HALVINGS = 30
 _ITERATIONS = 50  # most take five
 # Gauss's rule for a contact's length: exact for a circle, and for a node in an edge's either side.
+CAP = 0.01
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 
@@ -63,18 +64,21 @@ class Pressed(NamedTuple):
     shares: Floats
     # Shape (2, n_elements, n_points); Whereto.
     normals: Floats
+    # Shape (n_elements, n_points); By how much that turns along the contour.
+    turns: Floats
 
     @classmethod
     def none(cls, elements: int) -> "Pressed":
         """To be written by `press`."""
-        shape = elements, len(_GAUSS[0])
-        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros((2, *shape)))
+        shape = elements, len(_GAUSS[0]) + 1
+        each = [np.zeros(shape) for _ in range(3)]
+        return cls(*each, np.zeros((2, *shape)), np.zeros(shape))
 
 
 @njit(cache=True)
-def press(nodes: Floats, foot_x: float, arcs: Arcs, pressed: Pressed) -> None:
+def press(nodes: Floats, foot_x: float, length: float, arcs: Arcs, pressed: Pressed) -> None:
     """Write where a line of nodes is in the contour."""
-    depths, places, shares, normals = pressed
+    depths, places, shares, normals, turns = pressed
     depths[:] = 0.0
     for i in range(len(depths)):
         x, y = nodes[0, i] + foot_x, nodes[1, i]
@@ -86,12 +90,15 @@ def press(nodes: Floats, foot_x: float, arcs: Arcs, pressed: Pressed) -> None:
             continue
         begin = 0.0 if first > 0 else _end(x, y, run, rise, arcs)
         end = 1.0 if last > 0 else 1 - _end(x + run, y + rise, -run, -rise, arcs)
-        for j in range(depths.shape[1]):
+        for j in range(len(_GAUSS[0])):
             place = (begin + end + (end - begin) * _GAUSS[0][j]) / 2
-            depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+            depth, right, up, turn = _depth(x + place * run, y + place * rise, arcs)
             depths[i, j], places[i, j] = max(depth, 0.0), place
-            shares[i, j] = (end - begin) * _GAUSS[1][j] / 2
-            normals[0, i, j], normals[1, i, j] = right, up
+            shares[i, j] = length * (end - begin) * _GAUSS[1][j] / 2
+            normals[0, i, j], normals[1, i, j], turns[i, j] = right, up, turn
+    depth, right, up, turn = _depth(nodes[0, -1] + foot_x, nodes[1, -1], arcs)
+    depths[-1, -1], places[-1, -1], shares[-1, -1] = max(depth, 0.0), 1.0, CAP
+    normals[0, -1, -1], normals[1, -1, -1], turns[-1, -1] = right, up, turn
 
 
 @njit(cache=True)
@@ -100,7 +107,7 @@ def _dips(x: float, y: float, run: float, rise: float, arcs: Arcs) -> bool:
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         place = (low + high) / 2
-        depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+        depth, right, up, _ = _depth(x + place * run, y + place * rise, arcs)
         if depth > 0:
             return True
         if right * run + up * rise < 0:
@@ -115,7 +122,7 @@ def _end(x: float, y: float, run: float, rise: float, arcs: Arcs) -> float:
     """Where along an element a contact begins, by Newton's method from outside."""
     place = 0.0
     for _ in range(_ITERATIONS):
-        depth, right, up = _depth(x + place * run, y + place * rise, arcs)
+        depth, right, up, _ = _depth(x + place * run, y + place * rise, arcs)
         slope = -(right * run + up * rise)
         if depth > -_FINE or slope <= 0:
             break
@@ -124,8 +131,8 @@ def _end(x: float, y: float, run: float, rise: float, arcs: Arcs) -> float:
 
 
 @njit(cache=True)
-def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float]:
-    """How deep a point is, and the normal there."""
+def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float, float]:
+    """How deep a point is, the normal there, and by how much it turns when the point moves on."""
     arc, beyond = 0, len(arcs.radii)
     while beyond - arc > 1:
         middle = (arc + beyond) // 2
@@ -137,15 +144,15 @@ def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float]:
     to_x, to_y, radius = x - arcs.centres[arc, 0], y - arcs.centres[arc, 1], arcs.radii[arc]
     if radius < 0:
         cos, sin, _ = arcs.tangents[arc]
-        return -(to_x * sin - to_y * cos), sin, -cos
+        return -(to_x * sin - to_y * cos), sin, -cos, 0.0
     out = np.hypot(to_x, to_y)
-    return radius - out, to_x / out, to_y / out
+    return radius - out, to_x / out, to_y / out, 1 / out
 
 
 @njit(cache=True)
 def push(outer: Floats, stiffness: float, pressed: Pressed) -> None:
     """Add the forces on elements, by the lever, to those on nodes."""
-    depths, places, shares, normals = pressed
+    depths, places, shares, normals, turns = pressed
     for i in range(len(depths)):
         for j in range(depths.shape[1]):
             if depths[i, j] == 0:
@@ -154,3 +161,33 @@ def push(outer: Floats, stiffness: float, pressed: Pressed) -> None:
             for k in range(2):
                 outer[k, i] += (1 - places[i, j]) * force * normals[k, i, j]
                 outer[k, i + 1] += places[i, j] * force * normals[k, i, j]
+
+
+@njit(cache=True)
+def stiffen(slopes: Floats, stiffness: float, pressed: Pressed) -> None:
+    """Add the derivatives of those forces, by diagonals; where a contact ends it is not deep."""
+    depths, places, shares, normals, turns = pressed
+    reach = len(slopes) // 2
+    block = np.empty((2, 2))
+    for i in range(len(depths)):
+        for j in range(depths.shape[1]):
+            if depths[i, j] == 0:
+                continue
+            right, up = normals[0, i, j], normals[1, i, j]
+            bent = turns[i, j] * depths[i, j]
+            block[0, 0] = bent * up * up - right * right
+            block[1, 1] = bent * right * right - up * up
+            block[0, 1] = block[1, 0] = -(1 + bent) * right * up
+            for a in range(2):
+                for b in range(2):
+                    lever = (places[i, j] if a else 1 - places[i, j]) * (
+                        places[i, j] if b else 1 - places[i, j]
+                    )
+                    if i + a == 0 or i + b == 0:
+                        continue
+                    for k in range(2):
+                        for m in range(2):
+                            row, column = 3 * (i + a - 1) + k, 3 * (i + b - 1) + m
+                            slopes[reach + row - column, column] += (
+                                stiffness * shares[i, j] * lever * block[k, m]
+                            )

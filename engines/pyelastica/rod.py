@@ -16,7 +16,7 @@ from scipy.linalg import solve_banded
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from engines.agreement import State, hinges
-from engines.pyelastica.contact import Arcs, Pressed, press, push
+from engines.pyelastica.contact import Arcs, Pressed, press, push, stiffen
 
 DEBUG = False
 
@@ -24,10 +24,10 @@ STIFFNESS = 1e5
 """S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 2e-4."""
 _CONTACT = 1e9  # EI/L^4; of a length of the line; a load of 20 that the tip bears is 6e-4 L deep
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
-_NUDGE = 1e-8  # L, rad; for derivatives
+_NUDGE = 1e-7  # L, rad; for derivatives
 _TURN = 0.1  # rad; no element turns farther in an iteration
-_REST = 1e-7  # EI/L^2, EI/L; S/h rounds to 1e-9
-_ITERATIONS = 30
+_REST = 1e-6  # EI/L^2, EI/L; S/h rounds to 1e-9
+_ITERATIONS = 60
 _OVERSHOT = 0.1
 _HALVINGS = 12
 _DEEP = 2e-3
@@ -45,7 +45,8 @@ class ElasticaRod:
         self._radius, self._arcs = case.radius, Arcs.of(case)
         self._foot_x = float(case.foot_x[0]) / case.beam.length
         self._stride = _STRIDE * case.radius
-        self._pressed, self._stiffness = Pressed.none(elements), _CONTACT * length
+        self._pressed, self._stiffness = Pressed.none(elements), _CONTACT
+        self._length = length
         self._rod = _rod(elements, length)
         # Of every element but the first: its first node's place, its heading; then the tip's place.
         upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
@@ -111,7 +112,7 @@ class ElasticaRod:
             share = (low + high) / 2
         return share
 
-    def _left(self, unknowns: Floats) -> Floats:
+    def _left(self, unknowns: Floats, contact=True) -> Floats:
         """The forces on nodes and torques on elements that nothing balances."""
         rod, left = self._rod, np.empty(len(unknowns) + 1)
         sin, cos = np.sin(unknowns[2::3]), np.cos(unknowns[2::3])
@@ -121,9 +122,10 @@ class ElasticaRod:
         directors[1, 0, 1:], directors[1, 1, 1:] = cos, sin
         directors[2, 0, 1:], directors[2, 1, 1:] = -sin, cos
         rod.compute_internal_forces_and_torques(0.0)
-        press(places, self._foot_x, self._arcs, self._pressed)
         outer = rod.internal_forces[:2]
-        push(outer, self._stiffness, self._pressed)
+        if contact:
+            press(places, self._foot_x, self._length, self._arcs, self._pressed)
+            push(outer, self._stiffness, self._pressed)
         left[::3], left[1::3], left[2:-1:3] = (
             outer[0, 1:],
             outer[1, 1:],
@@ -134,10 +136,12 @@ class ElasticaRod:
     def _slopes(self, left: Floats) -> Floats:
         """Their derivatives, by diagonals: those out of each other's reach at once."""
         nudges = _NUDGE * self._apart
-        changed = np.array([self._left(self._unknowns + nudge) - left for nudge in nudges])
+        left = self._left(self._unknowns, False)
+        changed = np.array([self._left(self._unknowns + nudge, False) - left for nudge in nudges])
         slopes = np.zeros((2 * _REACH + 1, len(left)))
         row, column = self._near
         slopes[_REACH + row - column, column] = changed[column % len(nudges), row] / _NUDGE
+        stiffen(slopes, self._stiffness, self._pressed)
         return slopes
 
     def look(self) -> State:
