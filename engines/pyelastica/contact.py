@@ -21,7 +21,7 @@ _FINE = 1e-13  # L; of the ends of a contact
 _HALVINGS = 30
 _ITERATIONS = 50  # most take five
 # Gauss's rule for a contact's length: exact for a circle, and for a node in an edge's either side.
-CAP = 0.01
+CAP = 1e-3
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 

@@ -27,9 +27,11 @@ _REACH = 5  # unknowns; by so many at most are those apart that feel each other
 _NUDGE = 1e-7  # L, rad; for derivatives
 _TURN = 0.1  # rad; no element turns farther in an iteration
 _REST = 1e-6  # EI/L^2, EI/L; S/h rounds to 1e-9
-_ITERATIONS = 60
+_ITERATIONS = 100
 _OVERSHOT = 0.1
-_HALVINGS = 12
+_HALVINGS = 20
+_NEAR = 1e-4
+_DRAG = 1.0
 _DEEP = 2e-3
 _STRIDE = 2  # radii
 
@@ -51,63 +53,60 @@ class ElasticaRod:
         # Of every element but the first: its first node's place, its heading; then the tip's place.
         upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
         self._unknowns = upright.ravel()[:-1]
+        self._dragged = np.where(np.arange(len(self._unknowns)) % 3 < 2, length, 0.0)
         index, every = np.arange(len(self._unknowns)), 2 * _REACH + 1
         self._apart = index % every == np.arange(every)[:, None]
         self._near = np.nonzero(np.abs(index[:, None] - index) <= _REACH)
 
     def step(self, foot_x: float) -> None:
         """To rest, or where no number is one."""
-        loaded = self._pressed.depths.any()
-        ways = int(np.ceil(abs(foot_x - self._foot_x) / (0.1 if loaded else self._stride)))
-        for place in np.linspace(self._foot_x, foot_x, 1 + max(ways, 1))[1:].tolist():
-            if ways:
-                self._lead(place)
-            self._left(self._unknowns)
-            if DEBUG: print("  lead", place, self._pressed.depths.max())
-            if self._pressed.depths.max() > _DEEP or not self._settle():
+        far = abs(foot_x - self._foot_x)
+        ways = 1 if self._pressed.depths.any() else max(1, int(np.ceil(far / self._stride)))
+        for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
+            if not (self._lead(place) and self._settle(far < _NEAR)):
                 self._unknowns = np.full_like(self._unknowns, np.nan)
                 return
 
-    def _lead(self, foot_x: float) -> None:
-        """Move the foot, and the rod as it would go if all were linear."""
-        here, slopes = self._foot_x, self._slopes(self._left(self._unknowns))
-        ahead = here + np.copysign(_NUDGE, foot_x - here)
-        self._foot_x = ahead
-        after = self._left(self._unknowns)
-        self._foot_x = here
-        change = (after - self._left(self._unknowns)) / (ahead - here)
-        self._foot_x = foot_x
-        move = self._solve(slopes, change * (foot_x - here))
-        self._unknowns = self._unknowns + move
+    def _lead(self, foot_x: float) -> bool:
+        """Move the foot, and the rod as if all were linear; whether no contact is too deep then."""
+        way = foot_x - self._foot_x
+        before = self._left(self._unknowns)
+        if way:
+            slopes = self._slopes()
+            self._foot_x += np.copysign(_NUDGE, way)
+            change = (self._left(self._unknowns) - before) / _NUDGE
+            self._foot_x = foot_x
+            self._unknowns = self._unknowns + _move(slopes, abs(way) * change)
+            self._left(self._unknowns)
+        return bool(self._pressed.depths.max() < _DEEP)
 
-    def _solve(self, slopes, left):
-        move = solve_banded((_REACH, _REACH), slopes, -left, check_finite=False)
-        return min(1.0, _TURN / max(np.abs(move[2::3]).max(), 1e-300)) * move
-
-    def _settle(self) -> bool:
-        """Whether it found a rest."""
+    def _settle(self, downhill: bool) -> bool:
+        """Whether it found a rest; `downhill` from where it is, if its forces drive it away."""
+        drag = 0.0
         for _ in range(_ITERATIONS if np.isfinite(self._unknowns).all() else 0):
             left = self._left(self._unknowns)
-            if DEBUG: print("   ", _, np.abs(left).max(), self._pressed.depths.max())
             if np.abs(left).max() < _REST:
                 return True
-            move = self._solve(self._slopes(left), left)
+            slopes = self._slopes()
+            move = _move(slopes, left)
+            while left @ move < 0:
+                if not downhill or drag > 1e8:
+                    return False
+                drag = max(_DRAG, 4 * drag)
+                slopes[_REACH] -= drag * self._dragged
+                move = _move(slopes, left)
+            if DEBUG: print("   ", np.abs(left).max(), self._pressed.depths.max(), drag)
+            drag = drag / 8 if drag > _DRAG else 0.0
             self._unknowns = self._unknowns + self._share(left, move) * move
         return False
 
-    def _share(self, left, move) -> float:
-        """How far along a move the forces do work."""
-        work = left @ move
-        if work < 0:
-            if DEBUG: print("    uphill", work)
-            return 1.0
-        low, high = 0.0, 1.0
-        share = 1.0
+    def _share(self, left: Floats, move: Floats) -> float:
+        """How much of a move the forces do work along: beyond, contacts stop or let go."""
+        work, low, high, share = left @ move, 0.0, 1.0, 1.0
         for _ in range(_HALVINGS):
             at = self._left(self._unknowns + share * move) @ move
-            if DEBUG: print("        ", share, at / work)
             if abs(at) < _OVERSHOT * work or (share == 1 and at > 0):
-                return share
+                break
             low, high = (share, high) if at > 0 else (low, share)
             share = (low + high) / 2
         return share
@@ -133,7 +132,7 @@ class ElasticaRod:
         )
         return left[:-1]
 
-    def _slopes(self, left: Floats) -> Floats:
+    def _slopes(self) -> Floats:
         """Their derivatives, by diagonals: those out of each other's reach at once."""
         nudges = _NUDGE * self._apart
         left = self._left(self._unknowns, False)
@@ -178,6 +177,12 @@ class ElasticaRod:
     def go_back(self, kept: tuple[float, Floats]) -> None:
         """To the same."""
         self._foot_x, self._unknowns = kept
+
+
+def _move(slopes: Floats, left: Floats) -> Floats:
+    """By which linear forces would vanish; no element turns too far."""
+    move = solve_banded((_REACH, _REACH), slopes, -left, check_finite=False)
+    return move * min(1.0, _TURN / max(np.abs(move[2::3]).max(), _TURN))
 
 
 def _rod(elements: int, length: float) -> Any:  # noqa: ANN401
