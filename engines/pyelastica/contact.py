@@ -1,10 +1,10 @@
 """A contact that PyElastica has not: a line of straight elements against any convex contour.
 
-The contour, moved out by the vibrissa's radius, is a chain of arcs. Every point of the line in it
-is pushed out along the normal there, in proportion to how deep it is, and an element's nodes bear
-what the lever says. So forces are the gradient of one energy, the integral of squared depths along
-the line. They change smoothly wherever a contact goes: from node to element, around a corner, or
-along an edge on which whole elements lie.
+The contour, moved out by the vibrissa's radius, is a chain of arcs. Every point of the line that is
+in it is pushed out along the normal there, in proportion to its depth, and an element's nodes bear
+what the lever says. So forces are the gradient of one energy, an integral of squared depths along
+the line. They change smoothly wherever a contact goes: from an element to the next, around a
+corner, or along an edge on which elements lie.
 """
 
 from typing import NamedTuple
@@ -15,14 +15,20 @@ from numba import njit
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 
+STIFFNESS = 1e9
+"""Of a contact, by its length along the line [EI/L^4]; see `_CAP`.
+
+A load of 20 EI/L^2 on a corner of radius 5e-3 L is 3e-5 L deep. Chosen on the parabola, from 1e7 to
+1e10, where readings no longer change.
+"""
+_CAP = 1e-3  # L; the tip is pushed as so long a line; a load of 20 is 2e-5 L deep
 _POINTS = 4000  # of the contour; between them arcs: right to 1e-10 of the radius of curvature
 _STRAIGHT = 1e-9  # rad; a piece of contour that turns less
-_FINE = 1e-13  # L; of the ends of a contact
-_HALVINGS = 30
+_HALVINGS = 30  # of an element; a contact that is shorter is not deep
+_FINE = 1e-13  # L; how deep a contact is at its ends
 _ITERATIONS = 50  # most take five
-# Gauss's rule for a contact's length: exact for a circle, and for a node in an edge's either side.
-CAP = 1e-3
-_GAUSS = np.polynomial.legendre.leggauss(4)
+# Gauss's rule is exact where depths are linear or quadratic along the line, their slopes as well.
+_KNOTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class Arcs(NamedTuple):
@@ -56,49 +62,60 @@ class Arcs(NamedTuple):
 
 
 class Pressed(NamedTuple):
-    """Points of every element where it is pushed; depths are 0 where it is not."""
+    """Points of every element where it is pushed, and then its end, if that is the tip."""
 
-    # Shape (n_elements, n_points) each; how deep, where along the element, and for which share.
+    # Shape (n_elements, n_points), each; How deep; where that is 0 the rest says nothing.
     depths: Floats
+    # Where along the element, and the stiffness there [EI/L^3].
     places: Floats
-    shares: Floats
+    stiffness: Floats
+    # The slope of the contour's normal by place [1/L].
+    turns: Floats
     # Shape (2, n_elements, n_points); Whereto.
     normals: Floats
-    # Shape (n_elements, n_points); By how much that turns along the contour.
-    turns: Floats
 
     @classmethod
     def none(cls, elements: int) -> "Pressed":
         """To be written by `press`."""
-        shape = elements, len(_GAUSS[0]) + 1
-        each = [np.zeros(shape) for _ in range(3)]
-        return cls(*each, np.zeros((2, *shape)), np.zeros(shape))
+        shape = elements, len(_KNOTS) + 1
+        return cls(*(np.zeros(shape) for _ in range(4)), np.zeros((2, *shape)))
+
+    @property
+    def forces(self) -> Floats:
+        """Shape (2, n_elements, n_points)."""
+        return np.asarray(self.stiffness * self.depths * self.normals)
 
 
 @njit(cache=True)
-def press(nodes: Floats, foot_x: float, length: float, arcs: Arcs, pressed: Pressed) -> None:
-    """Write where a line of nodes is in the contour."""
-    depths, places, shares, normals, turns = pressed
-    depths[:] = 0.0
-    for i in range(len(depths)):
-        x, y = nodes[0, i] + foot_x, nodes[1, i]
-        run, rise = nodes[0, i + 1] - nodes[0, i], nodes[1, i + 1] - nodes[1, i]
+def press(nodes: Floats, length: float, arcs: Arcs, pressed: Pressed) -> None:
+    """Write where a line of nodes is in the contour; `length` is that of its elements at rest."""
+    pressed.depths[:] = 0.0
+    for i in range(len(pressed.depths)):
+        x, y = nodes[0, i], nodes[1, i]
+        run, rise = nodes[0, i + 1] - x, nodes[1, i + 1] - y
         first, last = _depth(x, y, arcs)[0], _depth(x + run, y + rise, arcs)[0]
-        if first + last + np.hypot(run, rise) <= 0:
+        if first + last + np.hypot(run, rise) <= 0:  # too far away
             continue
         if first <= 0 and last <= 0 and not _dips(x, y, run, rise, arcs):
             continue
         begin = 0.0 if first > 0 else _end(x, y, run, rise, arcs)
         end = 1.0 if last > 0 else 1 - _end(x + run, y + rise, -run, -rise, arcs)
-        for j in range(len(_GAUSS[0])):
-            place = (begin + end + (end - begin) * _GAUSS[0][j]) / 2
-            depth, right, up, turn = _depth(x + place * run, y + place * rise, arcs)
-            depths[i, j], places[i, j] = max(depth, 0.0), place
-            shares[i, j] = length * (end - begin) * _GAUSS[1][j] / 2
-            normals[0, i, j], normals[1, i, j], turns[i, j] = right, up, turn
-    depth, right, up, turn = _depth(nodes[0, -1] + foot_x, nodes[1, -1], arcs)
-    depths[-1, -1], places[-1, -1], shares[-1, -1] = max(depth, 0.0), 1.0, CAP
-    normals[0, -1, -1], normals[1, -1, -1], turns[-1, -1] = right, up, turn
+        for j in range(len(_KNOTS)):
+            place = (begin + end + (end - begin) * _KNOTS[j]) / 2
+            _write(pressed, i, j, place, x + place * run, y + place * rise, arcs)
+            pressed.stiffness[i, j] = STIFFNESS * length * (end - begin) * _WEIGHTS[j] / 2
+    _write(pressed, -1, -1, 1.0, nodes[0, -1], nodes[1, -1], arcs)
+    pressed.stiffness[-1, -1] = STIFFNESS * _CAP
+
+
+@njit(cache=True)
+def _write(
+    pressed: Pressed, i: int, j: int, place: float, x: float, y: float, arcs: Arcs
+) -> None:  # fmt: skip
+    """One point."""
+    depth, right, up, turn = _depth(x, y, arcs)
+    pressed.depths[i, j], pressed.places[i, j] = max(depth, 0.0), place
+    pressed.normals[0, i, j], pressed.normals[1, i, j], pressed.turns[i, j] = right, up, turn
 
 
 @njit(cache=True)
@@ -150,44 +167,39 @@ def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True)
-def push(outer: Floats, stiffness: float, pressed: Pressed) -> None:
-    """Add the forces on elements, by the lever, to those on nodes."""
-    depths, places, shares, normals, turns = pressed
+def push(outer: Floats, pressed: Pressed) -> None:
+    """Add the forces to those on nodes."""
+    depths, places, stiffness, _, normals = pressed
     for i in range(len(depths)):
         for j in range(depths.shape[1]):
-            if depths[i, j] == 0:
-                continue
-            force = stiffness * shares[i, j] * depths[i, j]
-            for k in range(2):
-                outer[k, i] += (1 - places[i, j]) * force * normals[k, i, j]
-                outer[k, i + 1] += places[i, j] * force * normals[k, i, j]
+            force = stiffness[i, j] * depths[i, j]
+            if force > 0:
+                for k in range(2):
+                    outer[k, i] += (1 - places[i, j]) * force * normals[k, i, j]
+                    outer[k, i + 1] += places[i, j] * force * normals[k, i, j]
 
 
 @njit(cache=True)
-def stiffen(slopes: Floats, stiffness: float, pressed: Pressed) -> None:
-    """Add the derivatives of those forces, by diagonals; where a contact ends it is not deep."""
-    depths, places, shares, normals, turns = pressed
+def stiffen(slopes: Floats, pressed: Pressed) -> None:
+    """Add the derivatives of those forces, by diagonals; each node but the first has three rows.
+
+    The ends of a contact move, too, but nothing is deep there.
+    """
+    depths, places, stiffness, turns, normals = pressed
     reach = len(slopes) // 2
-    block = np.empty((2, 2))
+    outward, along = np.empty(4), np.empty(4)
     for i in range(len(depths)):
         for j in range(depths.shape[1]):
-            if depths[i, j] == 0:
+            if depths[i, j] <= 0:
                 continue
-            right, up = normals[0, i, j], normals[1, i, j]
             bent = turns[i, j] * depths[i, j]
-            block[0, 0] = bent * up * up - right * right
-            block[1, 1] = bent * right * right - up * up
-            block[0, 1] = block[1, 0] = -(1 + bent) * right * up
-            for a in range(2):
-                for b in range(2):
-                    lever = (places[i, j] if a else 1 - places[i, j]) * (
-                        places[i, j] if b else 1 - places[i, j]
-                    )
-                    if i + a == 0 or i + b == 0:
-                        continue
-                    for k in range(2):
-                        for m in range(2):
-                            row, column = 3 * (i + a - 1) + k, 3 * (i + b - 1) + m
-                            slopes[reach + row - column, column] += (
-                                stiffness * shares[i, j] * lever * block[k, m]
-                            )
+            for k in range(4):
+                lever = places[i, j] if k > 1 else 1 - places[i, j]
+                outward[k] = lever * normals[k % 2, i, j]
+                along[k] = lever * normals[1 - k % 2, i, j] * (2 * (k % 2) - 1)
+            for k in range(0 if i else 2, 4):
+                row = 3 * (i - 1 + k // 2) + k % 2
+                for m in range(0 if i else 2, 4):
+                    column = 3 * (i - 1 + m // 2) + m % 2
+                    slope = bent * along[k] * along[m] - outward[k] * outward[m]
+                    slopes[reach + row - column, column] += stiffness[i, j] * slope

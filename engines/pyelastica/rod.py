@@ -5,6 +5,10 @@ The foot stands and the object moves, which is the same at rest. PyElastica's ow
 explicit, and must follow the stiffest swing, shear and stretch of one element: they take thousands
 of steps a swing and some swings a station. Where they end, its forces and torques vanish, and that
 is what Newton's method looks for here: a step is one to rest.
+
+It goes no farther than forces do work, so it finds what rests, not what stands on its head. Where
+the vibrissa jumps, from edge to edge or off the object, a way of the foot is halved until it is
+short, and then the vibrissa goes downhill from where it was, to wherever that ends.
 """
 
 from typing import Any
@@ -18,22 +22,19 @@ from analytic.problem.case import Case
 from engines.agreement import State, hinges
 from engines.pyelastica.contact import Arcs, Pressed, press, push, stiffen
 
-DEBUG = False
-
 STIFFNESS = 1e5
 """S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 2e-4."""
-_CONTACT = 1e9  # EI/L^4; of a length of the line; a load of 20 that the tip bears is 6e-4 L deep
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
 _NUDGE = 1e-7  # L, rad; for derivatives
 _TURN = 0.1  # rad; no element turns farther in an iteration
 _REST = 1e-6  # EI/L^2, EI/L; S/h rounds to 1e-9
-_ITERATIONS = 100
-_OVERSHOT = 0.1
-_HALVINGS = 20
-_NEAR = 1e-4
-_DRAG = 1.0
-_DEEP = 2e-3
-_STRIDE = 2  # radii
+_ITERATIONS = 100  # most rests take five; downhill, fifty
+_OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at its end
+_HALVINGS = 20  # of a move; contacts are 1e-6 of one deep
+_DRAG = 0.05  # EI/L^3, EI/L; a thousandth of what bends a long element by a tenth of its length
+_NEAR = 1e-4  # L; a way of the foot so short that it is the object that lets go, not the way
+_DEEP = 2e-3  # L; contacts that are deeper lead Newton's method astray
+_STRIDE = 2  # radii; of the foot until something touches: less than the thinnest object is wide
 
 
 class ElasticaRod:
@@ -47,13 +48,11 @@ class ElasticaRod:
         self._radius, self._arcs = case.radius, Arcs.of(case)
         self._foot_x = float(case.foot_x[0]) / case.beam.length
         self._stride = _STRIDE * case.radius
-        self._pressed, self._stiffness = Pressed.none(elements), _CONTACT
-        self._length = length
+        self._length, self._pressed = length, Pressed.none(elements)
         self._rod = _rod(elements, length)
         # Of every element but the first: its first node's place, its heading; then the tip's place.
         upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
         self._unknowns = upright.ravel()[:-1]
-        self._dragged = np.where(np.arange(len(self._unknowns)) % 3 < 2, length, 0.0)
         index, every = np.arange(len(self._unknowns)), 2 * _REACH + 1
         self._apart = index % every == np.arange(every)[:, None]
         self._near = np.nonzero(np.abs(index[:, None] - index) <= _REACH)
@@ -61,6 +60,7 @@ class ElasticaRod:
     def step(self, foot_x: float) -> None:
         """To rest, or where no number is one."""
         far = abs(foot_x - self._foot_x)
+        self._left(self._unknowns)
         ways = 1 if self._pressed.depths.any() else max(1, int(np.ceil(far / self._stride)))
         for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
             if not (self._lead(place) and self._settle(far < _NEAR)):
@@ -90,12 +90,11 @@ class ElasticaRod:
             slopes = self._slopes()
             move = _move(slopes, left)
             while left @ move < 0:
-                if not downhill or drag > 1e8:
+                if not downhill:
                     return False
                 drag = max(_DRAG, 4 * drag)
-                slopes[_REACH] -= drag * self._dragged
+                slopes[_REACH] -= drag
                 move = _move(slopes, left)
-            if DEBUG: print("   ", np.abs(left).max(), self._pressed.depths.max(), drag)
             drag = drag / 8 if drag > _DRAG else 0.0
             self._unknowns = self._unknowns + self._share(left, move) * move
         return False
@@ -111,8 +110,19 @@ class ElasticaRod:
             share = (low + high) / 2
         return share
 
-    def _left(self, unknowns: Floats, contact=True) -> Floats:
+    def _left(self, unknowns: Floats) -> Floats:
         """The forces on nodes and torques on elements that nothing balances."""
+        left = self._inner(unknowns)
+        nodes = self._rod.position_collection[:2] + np.array([[self._foot_x], [0.0]])
+        press(nodes, self._length, self._arcs, self._pressed)
+        outer = np.zeros_like(nodes)
+        push(outer, self._pressed)
+        left[::3] += outer[0, 1:]
+        left[1::3] += outer[1, 1:]
+        return left
+
+    def _inner(self, unknowns: Floats) -> Floats:
+        """The same, of the rod alone."""
         rod, left = self._rod, np.empty(len(unknowns) + 1)
         sin, cos = np.sin(unknowns[2::3]), np.cos(unknowns[2::3])
         places, directors = rod.position_collection, rod.director_collection
@@ -121,26 +131,19 @@ class ElasticaRod:
         directors[1, 0, 1:], directors[1, 1, 1:] = cos, sin
         directors[2, 0, 1:], directors[2, 1, 1:] = -sin, cos
         rod.compute_internal_forces_and_torques(0.0)
-        outer = rod.internal_forces[:2]
-        if contact:
-            press(places, self._foot_x, self._length, self._arcs, self._pressed)
-            push(outer, self._stiffness, self._pressed)
-        left[::3], left[1::3], left[2:-1:3] = (
-            outer[0, 1:],
-            outer[1, 1:],
-            rod.internal_torques[0, 1:],
-        )
+        left[::3], left[1::3] = rod.internal_forces[:2, 1:]
+        left[2:-1:3] = rod.internal_torques[0, 1:]
         return left[:-1]
 
     def _slopes(self) -> Floats:
-        """Their derivatives, by diagonals: those out of each other's reach at once."""
+        """The derivatives of `_left`, by diagonals: those out of each other's reach at once."""
+        inner = self._inner(self._unknowns)
         nudges = _NUDGE * self._apart
-        left = self._left(self._unknowns, False)
-        changed = np.array([self._left(self._unknowns + nudge, False) - left for nudge in nudges])
-        slopes = np.zeros((2 * _REACH + 1, len(left)))
+        changed = np.array([self._inner(self._unknowns + nudge) - inner for nudge in nudges])
+        slopes = np.zeros((2 * _REACH + 1, len(inner)))
         row, column = self._near
         slopes[_REACH + row - column, column] = changed[column % len(nudges), row] / _NUDGE
-        stiffen(slopes, self._stiffness, self._pressed)
+        stiffen(slopes, self._pressed)
         return slopes
 
     def look(self) -> State:
@@ -150,10 +153,9 @@ class ElasticaRod:
         nodes = rod.position_collection[:2].T
         pressed = self._pressed
         felt = pressed.depths > 0
-        push = pressed.normals[:, felt].T
         element, _ = np.nonzero(felt)
-        axis = nodes[element] + pressed.places[felt, None] * (nodes[element + 1] - nodes[element])
-        size = self._stiffness * pressed.shares[felt] * pressed.depths[felt]
+        place, push = pressed.places[felt, None], pressed.normals[:, felt].T
+        axis = (1 - place) * nodes[element] + place * nodes[element + 1]
         # Directors are in rows; a rod of PyElastica's gets thinner where it is longer.
         fx, fy, _ = rod.director_collection[:, :, 0].T @ rod.internal_stress[:, 0]
         fx, fy = fx / rod.dilatation[0], fy / rod.dilatation[0]
@@ -166,7 +168,7 @@ class ElasticaRod:
             nodes[1:].copy(),
             -np.array([fx, fy, moment + x * fy - y * fx]),
             axis - self._radius * push,
-            size[:, None] * push,
+            pressed.forces[:, felt].T,
             turns,
         )
 
