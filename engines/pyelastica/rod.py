@@ -2,13 +2,10 @@
 
 The first element is held by its middle, so that the rod begins half an element before the clamp.
 The foot stands and the object moves, which is the same at rest. PyElastica's own steps are
-explicit, and must follow the stiffest swing, shear and stretch of one element: they take thousands
-of steps a swing and some swings a station. Where they end, its forces and torques vanish, and that
-is what Newton's method looks for here: a step is one to rest.
-
-It goes no farther than forces do work, so it finds what rests, not what stands on its head. Where
-the vibrissa jumps, from edge to edge or off the object, a way of the foot is halved until it is
-short, and then the vibrissa goes downhill from where it was, to wherever that ends.
+explicit, thousands a swing. Where they end, its forces and torques vanish, and that is what
+Newton's method looks for here, downhill: a step is one to rest. Where the vibrissa jumps, from edge
+to edge or off the object, the foot's way is halved until it is short, and the jump ends where
+forces lead.
 """
 
 from typing import Any
@@ -20,18 +17,18 @@ from scipy.linalg import solve_banded
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from engines.agreement import State, hinges
-from engines.pyelastica.contact import Arcs, Pressed, press, push, stiffen
+from engines.pyelastica.contact import POINTS, Arcs, press, push
 
 STIFFNESS = 1e5
 """S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 2e-4."""
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
-_NUDGE = 1e-7  # L, rad; for derivatives
+_NUDGE = 1e-10  # L, rad; for derivatives: contacts are 1e-8 deep
 _TURN = 0.1  # rad; no element turns farther in an iteration
 _REST = 1e-6  # EI/L^2, EI/L; S/h rounds to 1e-9
 _ITERATIONS = 100  # most rests take five; downhill, fifty
 _OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at its end
 _HALVINGS = 20  # of a move; contacts are 1e-6 of one deep
-_DRAG = 0.05  # EI/L^3, EI/L; a thousandth of what bends a long element by a tenth of its length
+_DRAG = 0.05  # EI/L^3, EI/L; the softest way to bend a whole rod of 20 elements resists 0.6
 _NEAR = 1e-4  # L; a way of the foot so short that it is the object that lets go, not the way
 _DEEP = 2e-3  # L; contacts that are deeper lead Newton's method astray
 _STRIDE = 2  # radii; of the foot until something touches: less than the thinnest object is wide
@@ -47,8 +44,7 @@ class ElasticaRod:
         length = 1 / (elements - 0.5)
         self._radius, self._arcs = case.radius, Arcs.of(case)
         self._foot_x = float(case.foot_x[0]) / case.beam.length
-        self._stride = _STRIDE * case.radius
-        self._length, self._pressed = length, Pressed.none(elements)
+        self._length, self._pressed = length, np.zeros((5, elements, POINTS))
         self._rod = _rod(elements, length)
         # Of every element but the first: its first node's place, its heading; then the tip's place.
         upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
@@ -60,30 +56,29 @@ class ElasticaRod:
     def step(self, foot_x: float) -> None:
         """To rest, or where no number is one."""
         far = abs(foot_x - self._foot_x)
-        self._left(self._unknowns)
-        ways = 1 if self._pressed.depths.any() else max(1, int(np.ceil(far / self._stride)))
+        self._left(self._unknowns)  # what touches
+        ways = 1 if self._pressed[0].any() else max(1, int(np.ceil(far / (_STRIDE * self._radius))))
         for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
-            if not (self._lead(place) and self._settle(far < _NEAR)):
+            self._lead(place)
+            if not (self._pressed[0].max() < _DEEP and self._settle(far < _NEAR)):
                 self._unknowns = np.full_like(self._unknowns, np.nan)
                 return
 
-    def _lead(self, foot_x: float) -> bool:
-        """Move the foot, and the rod as if all were linear; whether no contact is too deep then."""
-        way = foot_x - self._foot_x
-        before = self._left(self._unknowns)
+    def _lead(self, foot_x: float) -> None:
+        """Move the foot, and the rod as if all were linear."""
+        way, left = foot_x - self._foot_x, self._left(self._unknowns)
         if way:
             slopes = self._slopes()
             self._foot_x += np.copysign(_NUDGE, way)
-            change = (self._left(self._unknowns) - before) / _NUDGE
+            change = (self._left(self._unknowns) - left) / _NUDGE
             self._foot_x = foot_x
             self._unknowns = self._unknowns + _move(slopes, abs(way) * change)
             self._left(self._unknowns)
-        return bool(self._pressed.depths.max() < _DEEP)
 
     def _settle(self, downhill: bool) -> bool:
         """Whether it found a rest; `downhill` from where it is, if its forces drive it away."""
         drag = 0.0
-        for _ in range(_ITERATIONS if np.isfinite(self._unknowns).all() else 0):
+        for _ in range(_ITERATIONS):
             left = self._left(self._unknowns)
             if np.abs(left).max() < _REST:
                 return True
@@ -112,17 +107,6 @@ class ElasticaRod:
 
     def _left(self, unknowns: Floats) -> Floats:
         """The forces on nodes and torques on elements that nothing balances."""
-        left = self._inner(unknowns)
-        nodes = self._rod.position_collection[:2] + np.array([[self._foot_x], [0.0]])
-        press(nodes, self._length, self._arcs, self._pressed)
-        outer = np.zeros_like(nodes)
-        push(outer, self._pressed)
-        left[::3] += outer[0, 1:]
-        left[1::3] += outer[1, 1:]
-        return left
-
-    def _inner(self, unknowns: Floats) -> Floats:
-        """The same, of the rod alone."""
         rod, left = self._rod, np.empty(len(unknowns) + 1)
         sin, cos = np.sin(unknowns[2::3]), np.cos(unknowns[2::3])
         places, directors = rod.position_collection, rod.director_collection
@@ -131,19 +115,20 @@ class ElasticaRod:
         directors[1, 0, 1:], directors[1, 1, 1:] = cos, sin
         directors[2, 0, 1:], directors[2, 1, 1:] = -sin, cos
         rod.compute_internal_forces_and_torques(0.0)
+        nodes = places[:2] + np.array([[self._foot_x], [0.0]])
+        press(nodes, self._length, self._arcs, self._pressed)
+        push(rod.internal_forces, self._pressed)
         left[::3], left[1::3] = rod.internal_forces[:2, 1:]
         left[2:-1:3] = rod.internal_torques[0, 1:]
         return left[:-1]
 
     def _slopes(self) -> Floats:
         """The derivatives of `_left`, by diagonals: those out of each other's reach at once."""
-        inner = self._inner(self._unknowns)
-        nudges = _NUDGE * self._apart
-        changed = np.array([self._inner(self._unknowns + nudge) - inner for nudge in nudges])
-        slopes = np.zeros((2 * _REACH + 1, len(inner)))
+        left, nudges = self._left(self._unknowns), _NUDGE * self._apart
+        changed = np.array([self._left(self._unknowns + nudge) - left for nudge in nudges])
+        slopes = np.zeros((len(nudges), len(left)))
         row, column = self._near
         slopes[_REACH + row - column, column] = changed[column % len(nudges), row] / _NUDGE
-        stiffen(slopes, self._pressed)
         return slopes
 
     def look(self) -> State:
@@ -151,10 +136,9 @@ class ElasticaRod:
         rod = self._rod
         self._left(self._unknowns)
         nodes = rod.position_collection[:2].T
-        pressed = self._pressed
-        felt = pressed.depths > 0
-        element, _ = np.nonzero(felt)
-        place, push = pressed.places[felt, None], pressed.normals[:, felt].T
+        element, point = np.nonzero(self._pressed[0])
+        depth, place, stiffness, *normal = self._pressed[:, element, point]
+        push, place = np.transpose(normal), place[:, None]
         axis = (1 - place) * nodes[element] + place * nodes[element + 1]
         # Directors are in rows; a rod of PyElastica's gets thinner where it is longer.
         fx, fy, _ = rod.director_collection[:, :, 0].T @ rod.internal_stress[:, 0]
@@ -168,7 +152,7 @@ class ElasticaRod:
             nodes[1:].copy(),
             -np.array([fx, fy, moment + x * fy - y * fx]),
             axis - self._radius * push,
-            pressed.forces[:, felt].T,
+            (stiffness * depth)[:, None] * push,
             turns,
         )
 
