@@ -24,7 +24,7 @@ hexagon 1e8 turns a force at a corner by 8e-3 rad.
 _CAP = 1e-3  # L; the tip is pushed as so long a line; a load of 20 is 2e-5 L deep
 _POINTS = 4000  # of the contour; between them arcs: right to 1e-10 of the radius of curvature
 _STRAIGHT = 1e-9  # rad; a piece of contour that turns less
-_HALVINGS = 30  # of an element, to find where a contact begins and ends
+_HALVINGS = 50  # of an element, to find where a contact ends, to rounding: derivatives need it
 POINTS = 5  # of an element: those of Gauss's rule, and its end
 _KNOTS, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS - 1)
 

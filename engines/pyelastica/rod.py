@@ -30,6 +30,7 @@ _OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at 
 _HALVINGS = 20  # of a move; contacts are 1e-6 of one deep
 _DRAG = 0.05  # EI/L^3, EI/L; the softest way to bend a whole rod of 20 elements resists 0.6
 _NEAR = 1e-4  # L; a way of the foot so short that it is the object that lets go, not the way
+_ASIDE = 0.02  # L, rad; a rest so far from where the rod was led is on another branch
 _DEEP = 2e-3  # L; contacts that are deeper lead Newton's method astray
 _STRIDE = 2  # radii; of the foot until something touches: less than the thinnest object is wide
 
@@ -59,13 +60,14 @@ class ElasticaRod:
         self._left(self._unknowns)  # what touches
         ways = 1 if self._pressed[0].any() else max(1, int(np.ceil(far / (_STRIDE * self._radius))))
         for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
-            self._lead(place)
-            if not (self._pressed[0].max() < _DEEP and self._settle(far < _NEAR)):
-                self._unknowns = np.full_like(self._unknowns, np.nan)
+            led = self._lead(place)
+            rests = self._pressed[0].max() < _DEEP and self._settle(far < _NEAR)
+            if not rests or (far >= _NEAR and np.abs(self._unknowns - led).max() > _ASIDE):
+                self._unknowns = np.full_like(led, np.nan)
                 return
 
-    def _lead(self, foot_x: float) -> None:
-        """Move the foot, and the rod as if all were linear."""
+    def _lead(self, foot_x: float) -> Floats:
+        """Move the foot, and the rod as if all were linear; to where."""
         way, left = foot_x - self._foot_x, self._left(self._unknowns)
         if way:
             slopes = self._slopes()
@@ -74,6 +76,7 @@ class ElasticaRod:
             self._foot_x = foot_x
             self._unknowns = self._unknowns + _move(slopes, abs(way) * change)
             self._left(self._unknowns)
+        return self._unknowns
 
     def _settle(self, downhill: bool) -> bool:
         """Whether it found a rest; `downhill` from where it is, if its forces drive it away."""
