@@ -112,10 +112,8 @@ def _edge(first: Floats, last: Floats, outside: float, inside: float, arcs: Arcs
     """Where along an element it is not deep any more; `inside` if it is not even there."""
     for _ in range(_HALVINGS):
         middle = (outside + inside) / 2
-        if _depth(first, last, middle, arcs)[0] > 0:
-            inside = middle
-        else:
-            outside = middle
+        deep = _depth(first, last, middle, arcs)[0] > 0
+        outside, inside = (outside, middle) if deep else (middle, inside)
     return inside
 
 

@@ -24,7 +24,7 @@ STIFFNESS = 1e5
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
 _NUDGE = 1e-10  # L, rad; for derivatives: contacts are 1e-8 deep
 _TURN = 0.1  # rad; no element turns farther in an iteration
-_REST = 1e-6  # EI/L^2, EI/L; S/h rounds to 1e-9
+_REST = 1e-5  # EI/L^2, EI/L; where it lies along an edge, whatever touches a little leaves 5e-6
 _ITERATIONS = 100  # most rests take five; downhill, fifty
 _OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at its end
 _HALVINGS = 20  # of a move; contacts are 1e-6 of one deep
@@ -187,6 +187,5 @@ def _rod(elements: int, length: float) -> Any:  # noqa: ANN401
         density=1.0,
         youngs_modulus=4 / (np.pi * radius**4),
     )
-    axes = np.arange(3)
-    rod.shear_matrix[axes, axes] = STIFFNESS
+    rod.shear_matrix[np.arange(3), np.arange(3)] = STIFFNESS
     return rod
