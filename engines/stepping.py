@@ -23,6 +23,7 @@ _LOOKS = 16  # in a swing
 _SWINGS = 100  # until it counts as not at rest
 _SMALLEST = 1e-4  # L; the step of the foot in which a snap-off is located: each takes a new rest
 _NO_LOAD = 1e-9  # EI/L^2
+_RESTLESS = Row(force_x=np.nan, doubt="it does not come to rest")  # which is no snap-off, either
 
 
 class Stepper(Protocol):
@@ -127,7 +128,7 @@ class SteppedRest:
         self._kept = stepper.keep()
         self._found = self._foot_x, self._kept
 
-    def at(self, foot_x: float) -> Row | None:
+    def at(self, foot_x: float) -> Row:
         """By moving the foot, and waiting."""
         stepper = self._stepper
         stepper.go_back(self._kept)
@@ -141,7 +142,7 @@ class SteppedRest:
         """Go on from the last station."""
         self._foot_x, self._kept = self._found
 
-    def _wait(self, foot_x: float) -> State | Row | None:
+    def _wait(self, foot_x: float) -> State | Row:
         """The state in which it rests, or sleeps; or what it will read, if it has let go.
 
         That is what touches nothing for a swing, neither now nor once it is straight.
@@ -154,7 +155,7 @@ class SteppedRest:
             state = stepper.look()
             moved = float(np.abs(state.joints - last.joints).max())
             if not np.isfinite(moved):
-                return None
+                return _RESTLESS
             naps = naps + 1 if moved < _ASLEEP else 0
             if naps == _NAPS or (moved < _STILL and self._agreement.imbalance(state) < _REST):
                 return state
@@ -162,7 +163,7 @@ class SteppedRest:
             if clear and untouched >= _LOOKS and self._agreement.is_clear(state.joints, foot_x):
                 return self._free
             last = state
-        return None
+        return _RESTLESS
 
     def _row(self, state: State, foot_x: float) -> Row:
         doubt = self._agreement.doubt(state, foot_x)

@@ -1,1 +1,1 @@
-"""PyElastica's Cosserat rod, damped to rest, with a contact of our own."""
+"""PyElastica's Cosserat rod at rest, with a contact of our own."""

@@ -1,10 +1,10 @@
-"""A contact that PyElastica has not: a line of nodes against any convex contour, consistently.
+"""A contact that PyElastica has not: a line of straight elements against any convex contour.
 
-The contour, moved out by the vibrissa's radius, is a chain of arcs. Every node in it is pushed
-along its normal. An element that it is tangent to, deeper than its nodes are, is pushed there at
-right angles, and both its nodes bear what the lever says; the deeper one is then spared. So force
-and place come out of one energy, by the square of depths, and do not jump where a contact goes from
-element to node.
+The contour, moved out by the vibrissa's radius, is a chain of arcs. Every point of the line that is
+in it is pushed out along the normal there, in proportion to its depth, and an element's nodes bear
+what the lever says. So forces are the gradient of one energy, an integral of squared depths along
+the line. They change smoothly wherever a contact goes: from an element to the next, around a
+corner, or along an edge on which elements lie.
 """
 
 from typing import NamedTuple
@@ -15,23 +15,29 @@ from numba import njit
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 
+STIFFNESS = 1e9
+"""Of a contact, by its length along the line [EI/L^4]; see `_CAP`.
+
+A load of 20 EI/L^2 on a corner of radius 5e-3 L is 3e-5 L deep. On a parabola 1e7 would do; on a
+hexagon 1e8 turns a force at a corner by 8e-3 rad.
+"""
+_CAP = 1e-3  # L; the tip is pushed as so long a line; a load of 20 is 2e-5 L deep
 _POINTS = 4000  # of the contour; between them arcs: right to 1e-10 of the radius of curvature
 _STRAIGHT = 1e-9  # rad; a piece of contour that turns less
+_HALVINGS = 50  # of an element, to find where a contact ends, to rounding: derivatives need it
+POINTS = 5  # of an element: those of Gauss's rule, and its end
+_KNOTS, _WEIGHTS = np.polynomial.legendre.leggauss(POINTS - 1)
 
 
 class Arcs(NamedTuple):
     """The line that the axis of the vibrissa feels, from left to right; L = 1."""
 
-    # Shape (n + 1,); Slope angle at the ends of the arcs.
-    alpha: Floats
     # Shape (n + 1, 3); The tangents there, and where along them those ends are.
     tangents: Floats
     # Shape (n, 2); Centre, or where a straight piece begins.
     centres: Floats
     # Shape (n,); Negative for a straight piece.
     radii: Floats
-    # How deep a contact can be: what is deeper than the vibrissa is thick is past the object.
-    deepest: float
 
     @classmethod
     def of(cls, case: Case) -> "Arcs":
@@ -50,68 +56,72 @@ class Arcs(NamedTuple):
         centres = np.where(straight[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - inward)
         radii[straight] = -1.0
         tangents = np.column_stack([along, (ends * along).sum(axis=1)])
-        return cls(on.alpha, tangents, centres, radii, case.radius)
+        return cls(tangents, centres, radii)
 
 
 @njit(cache=True)
-def touch(
-    nodes: Floats, foot_x: float, arcs: Arcs, stiffness: float, forces: Floats, places: Floats
-) -> int:
-    """Write what the contour does to elements and then to nodes; say to how many.
+def press(nodes: Floats, length: float, arcs: Arcs, pressed: Floats) -> None:
+    """Write what pushes points of elements, whose `length` is that at rest; the last is the tip.
 
-    And where along the elements that is.
+    Shape (5, n_elements, `POINTS`): how deep they are, or 0; and if not 0 where along the element,
+    the stiffness there [EI/L^3], and the normal.
     """
-    count, found = nodes.shape[1] - 1, 0
-    forces[:] = 0.0
-    before = 0.0  # how deep the line of the element before is
-    for i in range(count + 1):
-        line = -1.0
-        if i < count:
-            line = _beside(nodes[:, i], nodes[:, i + 1], foot_x, arcs, forces[:, i], places[i:])
-        if i > 0 and max(line, before) > 0:
-            depth, right, up = _depth(nodes[0, i] + foot_x, nodes[1, i], arcs)
-            if 0 < depth < arcs.deepest:
-                forces[0, count + i], forces[1, count + i] = depth * right, depth * up
-        before = line
-    for i in range(count):
-        depth = np.hypot(forces[0, i], forces[1, i])
-        first = np.hypot(forces[0, count + i], forces[1, count + i])
-        last = np.hypot(forces[0, count + i + 1], forces[1, count + i + 1])
-        if depth == 0 or depth <= max(first, last):
-            forces[:, i] = 0.0
-        elif max(first, last) > 0:
-            forces[:, count + i + (last > first)] = 0.0
-    for i in range(2 * count + 1):
-        for k in range(2):
-            forces[k, i] *= stiffness
-        found += forces[0, i] != 0 or forces[1, i] != 0
-    return found
+    pressed[0] = 0.0
+    for i in range(pressed.shape[1]):
+        begin, end = _span(nodes[:, i], nodes[:, i + 1], arcs)
+        for j in range(len(_KNOTS) if end > begin else 0):
+            place = (begin + end + (end - begin) * _KNOTS[j]) / 2
+            depth, right, up = _depth(nodes[:, i], nodes[:, i + 1], place, arcs)
+            stiffness = STIFFNESS * length * (end - begin) * _WEIGHTS[j] / 2
+            pressed[:, i, j] = max(depth, 0.0), place, stiffness, right, up
+    depth, right, up = _depth(nodes[:, -2], nodes[:, -1], 1.0, arcs)
+    pressed[:, -1, -1] = max(depth, 0.0), 1.0, STIFFNESS * _CAP, right, up
 
 
 @njit(cache=True)
-def _beside(
-    begin: Floats, end: Floats, foot_x: float, arcs: Arcs, depths: Floats, place: Floats
-) -> float:
-    """How deep the line of an element is; as a vector, and where, if its own part of that is."""
-    run, rise = end[0] - begin[0], end[1] - begin[1]
-    length = np.hypot(run, rise)
-    right, up = rise / length, -run / length
-    slope = np.arctan2(rise, run)
-    if slope < -np.pi / 2:
-        slope += 2 * np.pi
-    arc = min(max(np.searchsorted(arcs.alpha, slope) - 1, 0), len(arcs.radii) - 1)
-    bulge = max(arcs.radii[arc], 0.0)
-    to_x = arcs.centres[arc, 0] + bulge * right - begin[0] - foot_x
-    to_y = arcs.centres[arc, 1] + bulge * up - begin[1]
-    along, depth = (to_x * run + to_y * rise) / length**2, to_x * right + to_y * up
-    if 0 < along < 1 and 0 < depth < arcs.deepest:
-        depths[0], depths[1], place[0] = depth * right, depth * up, along
-    return depth
+def push(outer: Floats, pressed: Floats) -> None:
+    """Add the forces to those on nodes."""
+    for i in range(pressed.shape[1]):
+        for depth, place, stiffness, right, up in pressed[:, i].T:
+            if depth > 0:
+                for k, force in enumerate((stiffness * depth * right, stiffness * depth * up)):
+                    outer[k, i] += (1 - place) * force
+                    outer[k, i + 1] += place * force
 
 
 @njit(cache=True)
-def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float]:
-    """How deep a point is, and the normal there."""
+def _span(first: Floats, last: Floats, arcs: Arcs) -> tuple[float, float]:
+    """Where along an element a contact begins and ends: depth is a concave function there."""
+    run, rise = last[0] - first[0], last[1] - first[1]
+    before, after = _depth(first, last, 0.0, arcs)[0], _depth(first, last, 1.0, arcs)[0]
+    if before + after + np.hypot(run, rise) <= 0:  # too far away
+        return 0.0, 0.0
+    low, high, top = 0.0, 1.0, 1.0 if after > before else 0.0
+    for _ in range(_HALVINGS if max(before, after) <= 0 else 0):
+        top = (low + high) / 2
+        depth, right, up = _depth(first, last, top, arcs)
+        if depth > 0:
+            break
+        low, high = (top, high) if right * run + up * rise < 0 else (low, top)
+    begin = 0.0 if before > 0 else _edge(first, last, 0.0, top, arcs)
+    return begin, 1.0 if after > 0 else _edge(first, last, 1.0, top, arcs)
+
+
+@njit(cache=True)
+def _edge(first: Floats, last: Floats, outside: float, inside: float, arcs: Arcs) -> float:
+    """Where along an element it is not deep any more; `inside` if it is not even there."""
+    for _ in range(_HALVINGS):
+        middle = (outside + inside) / 2
+        deep = _depth(first, last, middle, arcs)[0] > 0
+        outside, inside = (outside, middle) if deep else (middle, inside)
+    return inside
+
+
+@njit(cache=True)
+def _depth(first: Floats, last: Floats, place: float, arcs: Arcs) -> tuple[float, float, float]:
+    """How deep a point of an element is, and the normal there."""
+    x = (1 - place) * first[0] + place * last[0]
+    y = (1 - place) * first[1] + place * last[1]
     arc, beyond = 0, len(arcs.radii)
     while beyond - arc > 1:
         middle = (arc + beyond) // 2
@@ -126,14 +136,3 @@ def _depth(x: float, y: float, arcs: Arcs) -> tuple[float, float, float]:
         return -(to_x * sin - to_y * cos), sin, -cos
     out = np.hypot(to_x, to_y)
     return radius - out, to_x / out, to_y / out
-
-
-@njit(cache=True)
-def push(outer: Floats, forces: Floats, places: Floats) -> None:
-    """Add the forces on elements, by the lever, and on nodes to those on nodes."""
-    count = len(places)
-    for k in range(2):
-        for i in range(count):
-            outer[k, i] += (1 - places[i]) * forces[k, i] + forces[k, count + i]
-            outer[k, i + 1] += places[i] * forces[k, i]
-        outer[k, count] += forces[k, 2 * count]

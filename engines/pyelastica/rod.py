@@ -1,96 +1,148 @@
-"""PyElastica's rod, stepped and damped by its own modules; see `engines.stepping.Stepper`.
+"""PyElastica's rod, brought to rest on the forces that PyElastica has; see `engines.Stepper`.
 
 The first element is held by its middle, so that the rod begins half an element before the clamp.
-The foot stands and the object moves, which is the same at rest. Masses are ours to choose, as
-nothing of them shows at rest: the lightest that a step of 1 allows. Explicit steps must follow the
-stiffest swing, shear and stretch of one element, which is 2 sqrt(S)/(3.5 h) times as fast as the
-slowest, bending.
+The foot stands and the object moves, which is the same at rest. PyElastica's own steps are
+explicit, thousands a swing. Where they end, its forces and torques vanish, and that is what
+Newton's method looks for here, downhill: a step is one to rest. Where the vibrissa jumps, from edge
+to edge or off the object, the foot's way is halved until it is short, and the jump ends where
+forces lead.
 """
 
 from typing import Any
 
 import elastica
 import numpy as np
+from scipy.linalg import solve_banded
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from engines.agreement import State, hinges
-from engines.pyelastica.contact import Arcs, push, touch
+from engines.pyelastica.contact import POINTS, Arcs, press, push
 
-STIFFNESS = 4e4
-"""S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 5e-4."""
-_CONTACT = 0.25  # of a contact, by that of an element, S/h
-_TURNS = 0.05  # how much slower a step is for elements that turn: these are the heavier then
-_MARGIN = 1.02  # of masses: loads make the fastest swing a little faster
-_FREE, _PINNED = 3.516, 15.418  # sqrt(EI/L^4/mass by length); slowest swings of a cantilever
-
-
-class _Simulator(
-    elastica.BaseSystemCollection,  # type: ignore[misc]
-    elastica.Constraints,  # type: ignore[misc]
-    elastica.Forcing,  # type: ignore[misc]
-    elastica.Damping,  # type: ignore[misc]
-):
-    """With the modules that are used."""
+STIFFNESS = 1e5
+"""S: of shear and stretch [EI/L^2]. A load of 20 stretches the rod by 2e-4."""
+_REACH = 5  # unknowns; by so many at most are those apart that feel each other
+_NUDGE = 1e-10  # L, rad; for derivatives: contacts are 1e-8 deep
+_TURN = 0.1  # rad; no element turns farther in an iteration
+_REST = 1e-5  # EI/L^2, EI/L; where it lies along an edge, whatever touches a little leaves 5e-6
+_ITERATIONS = 400  # most rests take five; the way down from a fold, some hundred
+_OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at its end
+_HALVINGS = 20  # of a move; contacts are 1e-6 of one deep
+_DRAG = 0.05  # EI/L^3, EI/L; the softest way to bend a whole rod of 20 elements resists 0.6
+_NEAR = 1e-4  # L; a way of the foot so short that it is the object that lets go, not the way
+_ASIDE = 0.02  # L, rad; a rest so far from where the rod was led is on another branch
+_DEEP = 2e-3  # L; contacts that are deeper lead Newton's method astray
+_STRIDE = 2  # radii; of the foot until something touches: less than the thinnest object is wide
 
 
 class ElasticaRod:
     """A rod, an object beside it, and the state that both are in."""
 
+    period = 1  # a step is to rest: none swings
+
     def __init__(self, case: Case, elements: int) -> None:
         self.layout = hinges(case, elements - 1, last=1.0)
-        self._length = length = 1 / (elements - 0.5)
+        length = 1 / (elements - 0.5)
         self._radius, self._arcs = case.radius, Arcs.of(case)
-        self._stiffness = _CONTACT * STIFFNESS / length
         self._foot_x = float(case.foot_x[0]) / case.beam.length
-        self._forces, self._places = np.zeros((2, 2 * elements + 1)), np.zeros(elements)
-        mass = _MARGIN * (STIFFNESS * (1 + _TURNS) / length + self._stiffness / 2)
-        inertia = _MARGIN * (STIFFNESS * length * (1 + 1 / _TURNS) / 4 + 1 / length)
-        self._rod = _rod(elements, length, mass, inertia)
-        pace = np.sqrt(length / mass)
-        self.period = int(2 * np.pi / (_PINNED * pace))
-        self._simulator = _Simulator()
-        self._simulator.append(self._rod)
-        self._simulator.constrain(self._rod).using(
-            elastica.OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,)
-        )
-        self._simulator.add_forcing_to(self._rod).using(_Push, self)
-        self._simulator.dampen(self._rod).using(_Damp, slowest=_FREE * pace, fastest=_PINNED * pace)
-        self._simulator.finalize()
-        self._stepper = elastica.PositionVerlet()
-
-    def touch(self) -> int:
-        """Where the object pushes now, and on how many elements and nodes."""
-        return touch(
-            self._rod.position_collection,
-            self._foot_x,
-            self._arcs,
-            self._stiffness,
-            self._forces,
-            self._places,
-        )
-
-    def push(self, outer: Floats) -> None:
-        """Add to the forces on nodes what the object does."""
-        if self.touch():
-            push(outer, self._forces, self._places)
+        self._length, self._pressed = length, np.zeros((5, elements, POINTS))
+        self._rod = _rod(elements, length)
+        # Of every element but the first: its first node's place, its heading; then the tip's place.
+        upright = np.column_stack([*self._rod.position_collection[:2, 1:], np.zeros(elements)])
+        self._unknowns = upright.ravel()[:-1]
+        index, every = np.arange(len(self._unknowns)), 2 * _REACH + 1
+        self._apart = index % every == np.arange(every)[:, None]
+        self._near = np.nonzero(np.abs(index[:, None] - index) <= _REACH)
 
     def step(self, foot_x: float) -> None:
-        """One of PyElastica's."""
-        self._foot_x = foot_x
-        self._stepper.step(self._simulator, 0.0, 1.0)
+        """To rest, or where no number is one."""
+        far = abs(foot_x - self._foot_x)
+        self._left(self._unknowns)  # what touches
+        ways = 1 if self._pressed[0].any() else max(1, int(np.ceil(far / (_STRIDE * self._radius))))
+        for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
+            led = self._lead(place)
+            rests = self._pressed[0].max() < _DEEP and self._settle(far < _NEAR)
+            if not rests or (far >= _NEAR and np.abs(self._unknowns - led).max() > _ASIDE):
+                self._unknowns = np.full_like(led, np.nan)
+                return
+
+    def _lead(self, foot_x: float) -> Floats:
+        """Move the foot, and the rod as if all were linear; to where."""
+        way, left = foot_x - self._foot_x, self._left(self._unknowns)
+        if way:
+            slopes = self._slopes()
+            self._foot_x += np.copysign(_NUDGE, way)
+            change = (self._left(self._unknowns) - left) / _NUDGE
+            self._foot_x = foot_x
+            self._unknowns = self._unknowns + _move(slopes, abs(way) * change)
+            self._left(self._unknowns)
+        return self._unknowns
+
+    def _settle(self, downhill: bool) -> bool:
+        """Whether it found a rest; `downhill` from where it is, if its forces drive it away."""
+        drag = 0.0
+        for _ in range(_ITERATIONS):
+            left = self._left(self._unknowns)
+            if np.abs(left).max() < _REST:
+                return True
+            slopes = self._slopes()
+            move = _move(slopes, left)
+            while left @ move < 0:
+                if not downhill:
+                    return False
+                drag = max(_DRAG, 4 * drag)
+                slopes[_REACH] -= drag
+                move = _move(slopes, left)
+            drag = drag / 8 if drag > _DRAG else 0.0
+            self._unknowns = self._unknowns + self._share(left, move) * move
+        return False
+
+    def _share(self, left: Floats, move: Floats) -> float:
+        """How much of a move the forces do work along: beyond, contacts stop or let go."""
+        work, low, high, share = left @ move, 0.0, 1.0, 1.0
+        for _ in range(_HALVINGS):
+            at = self._left(self._unknowns + share * move) @ move
+            if abs(at) < _OVERSHOT * work or (share == 1 and at > 0):
+                break
+            low, high = (share, high) if at > 0 else (low, share)
+            share = (low + high) / 2
+        return share
+
+    def _left(self, unknowns: Floats) -> Floats:
+        """The forces on nodes and torques on elements that nothing balances."""
+        rod, left = self._rod, np.empty(len(unknowns) + 1)
+        sin, cos = np.sin(unknowns[2::3]), np.cos(unknowns[2::3])
+        places, directors = rod.position_collection, rod.director_collection
+        places[0, 1:], places[1, 1:] = unknowns[::3], unknowns[1::3]
+        # Directors are in rows: z, to the right, and along.
+        directors[1, 0, 1:], directors[1, 1, 1:] = cos, sin
+        directors[2, 0, 1:], directors[2, 1, 1:] = -sin, cos
+        rod.compute_internal_forces_and_torques(0.0)
+        nodes = places[:2] + np.array([[self._foot_x], [0.0]])
+        press(nodes, self._length, self._arcs, self._pressed)
+        push(rod.internal_forces, self._pressed)
+        left[::3], left[1::3] = rod.internal_forces[:2, 1:]
+        left[2:-1:3] = rod.internal_torques[0, 1:]
+        return left[:-1]
+
+    def _slopes(self) -> Floats:
+        """The derivatives of `_left`, by diagonals: those out of each other's reach at once."""
+        left, nudges = self._left(self._unknowns), _NUDGE * self._apart
+        changed = np.array([self._left(self._unknowns + nudge) - left for nudge in nudges])
+        slopes = np.zeros((len(nudges), len(left)))
+        row, column = self._near
+        slopes[_REACH + row - column, column] = changed[column % len(nudges), row] / _NUDGE
+        return slopes
 
     def look(self) -> State:
         """By nodes, and by stress and couple in the first element, carried to the foot."""
         rod = self._rod
-        for system in self._simulator.final_systems():
-            system.compute_internal_forces_and_torques(0.0)
+        self._left(self._unknowns)
         nodes = rod.position_collection[:2].T
-        self.touch()
-        forces = self._forces.T
-        felt = forces.any(axis=1)
-        size = np.hypot(*forces[felt].T)[:, None]
-        axis = np.vstack([nodes[:-1] + self._places[:, None] * np.diff(nodes, axis=0), nodes])
+        element, point = np.nonzero(self._pressed[0])
+        depth, place, stiffness, *normal = self._pressed[:, element, point]
+        push, place = np.transpose(normal), place[:, None]
+        axis = (1 - place) * nodes[element] + place * nodes[element + 1]
         # Directors are in rows; a rod of PyElastica's gets thinner where it is longer.
         fx, fy, _ = rod.director_collection[:, :, 0].T @ rod.internal_stress[:, 0]
         fx, fy = fx / rod.dilatation[0], fy / rod.dilatation[0]
@@ -102,33 +154,29 @@ class ElasticaRod:
         return State(
             nodes[1:].copy(),
             -np.array([fx, fy, moment + x * fy - y * fx]),
-            axis[felt] - self._radius * forces[felt] / size,
-            forces[felt].copy(),
+            axis - self._radius * push,
+            (stiffness * depth)[:, None] * push,
             turns,
         )
 
-    def _changing(self) -> list[Floats]:
-        rod = self._rod
-        return [
-            rod.position_collection,
-            rod.director_collection,
-            rod.velocity_collection,
-            rod.omega_collection,
-        ]
+    def keep(self) -> tuple[float, Floats]:
+        """Places and headings; of the foot, too."""
+        return self._foot_x, self._unknowns
 
-    def keep(self) -> list[Floats]:
-        """Places, directions and their rates."""
-        return [part.copy() for part in self._changing()]
-
-    def go_back(self, kept: list[Floats]) -> None:
+    def go_back(self, kept: tuple[float, Floats]) -> None:
         """To the same."""
-        for part, before in zip(self._changing(), kept, strict=True):
-            part[:] = before
+        self._foot_x, self._unknowns = kept
 
 
-def _rod(elements: int, length: float, mass: float, inertia: float) -> Any:  # noqa: ANN401
-    """An upright one whose rigidity is 1, with these masses of nodes and inertias of elements."""
-    radius = 0.01  # not the vibrissa's: PyElastica computes rigidity and masses from it
+def _move(slopes: Floats, left: Floats) -> Floats:
+    """By which linear forces would vanish; no element turns too far."""
+    move = solve_banded((_REACH, _REACH), slopes, -left, check_finite=False)
+    return move * min(1.0, _TURN / max(np.abs(move[2::3]).max(), _TURN))
+
+
+def _rod(elements: int, length: float) -> Any:  # noqa: ANN401
+    """An upright one whose rigidity is 1."""
+    radius = 0.01  # not the vibrissa's: PyElastica computes rigidity from it
     rod = elastica.CosseratRod.straight_rod(
         elements,
         start=np.array([0.0, -length / 2, 0.0]),
@@ -139,49 +187,5 @@ def _rod(elements: int, length: float, mass: float, inertia: float) -> Any:  # n
         density=1.0,
         youngs_modulus=4 / (np.pi * radius**4),
     )
-    axes = np.arange(3)
-    rod.shear_matrix[axes, axes] = STIFFNESS
-    rod.mass[:] = mass
-    rod.mass_second_moment_of_inertia[axes, axes] = inertia
-    rod.inv_mass_second_moment_of_inertia[axes, axes] = 1 / inertia
+    rod.shear_matrix[np.arange(3), np.arange(3)] = STIFFNESS
     return rod
-
-
-class _Push(elastica.NoForces):  # type: ignore[misc]
-    """The object, as PyElastica asks for forces."""
-
-    def __init__(self, rod: ElasticaRod) -> None:
-        self._rod = rod
-
-    def apply_forces(self, system: Any, time: float = 0.0) -> None:  # noqa: ANN401
-        """Those of now."""
-        self._rod.push(system.external_forces)
-
-
-class _Damp(elastica.DamperBase):  # type: ignore[misc]
-    """Damping that is critical for whatever swing is left, by its stiffness and mass.
-
-    Their ratio is that of changes of acceleration and place: dynamic relaxation (Papadrakakis,
-    Comput. Methods Appl. Mech. Eng. 25, 1981).
-    """
-
-    def __init__(self, slowest: float, fastest: float, **system: Any) -> None:  # noqa: ANN401
-        super().__init__(**system)
-        self._bounds, self._every, self._steps = (slowest, fastest), 25, 0
-        self._kept, self._places, self._pulls = np.exp(-2 * fastest), np.zeros(0), np.zeros(0)
-
-    def dampen_rates(self, system: Any, time: float) -> None:  # noqa: ANN401
-        """After every step."""
-        if self._steps % self._every == 0:
-            places = system.position_collection.ravel().copy()
-            pulls = system.acceleration_collection.ravel().copy()
-            if self._steps:
-                moved = places - self._places
-                stiff, heavy = -moved @ (pulls - self._pulls), moved @ moved
-                if heavy > 0:
-                    swing = np.sqrt(max(stiff / heavy, 0.0))
-                    self._kept = np.exp(-2 * np.clip(swing, *self._bounds))
-            self._places, self._pulls = places, pulls
-        self._steps += 1
-        system.velocity_collection *= self._kept
-        system.omega_collection *= self._kept

@@ -52,9 +52,10 @@ def test_ten_elements_are_the_rod_to_one_in_a_hundred(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["catenary", "parabola", "tip-only"])
+@pytest.mark.parametrize("name", ["catenary", "parabola", "tip-only", "hexagon"])
 def test_it_is_of_second_order(name):
-    coarse, fine = (off(named_case(name), n, 15) for n in (10, 20))
+    case = Case(profile=HEXAGON) if name == "hexagon" else named_case(name)
+    coarse, fine = (off(case, n, 15) for n in (10, 20))
     assert coarse.max() < 3e-2
     assert fine.max() < 1e-2
     assert np.log2(coarse.max() / fine.max()) > 1.5
@@ -62,17 +63,16 @@ def test_it_is_of_second_order(name):
 
 @pytest.mark.parametrize("profile", [circle(1.0, (0.0, 0.4)), HEXAGON], ids=["circle", "hexagon"])
 def test_contact_forces_are_the_gradient_of_one_energy(profile):
-    """Their derivatives are symmetric, whichever nodes and elements touch."""
-    from engines.pyelastica.contact import Arcs, push, touch
+    """Their derivatives are symmetric, and change smoothly, whichever elements touch."""
+    from engines.pyelastica.contact import POINTS, STIFFNESS, Arcs, press, push
 
     arcs, count, touched = Arcs.of(Case(profile=profile)), 6, 0
-    places = np.zeros(count)
 
     def pushed(nodes: np.ndarray) -> np.ndarray:
-        forces, outer = np.zeros((2, 2 * count + 1)), np.zeros((2, count + 1))
-        touch(nodes, 0.0, arcs, 1.0, forces, places)
-        push(outer, forces, places)
-        return outer.ravel()
+        points, outer = np.zeros((5, count, POINTS)), np.zeros((2, count + 1))
+        press(nodes, 0.05, arcs, points)
+        push(outer, points)
+        return outer.ravel() / (0.05 * STIFFNESS)
 
     random = np.random.default_rng(1)
     for _ in range(200):
@@ -85,22 +85,54 @@ def test_contact_forces_are_the_gradient_of_one_energy(profile):
         nodes = np.array([[on.xi], [on.eta]]) + along[:, None] * s + inward[:, None] * depth
         steps = 1e-7 * np.eye(nodes.size).reshape(-1, *nodes.shape)
         slopes = np.array([(pushed(nodes + d) - pushed(nodes - d)) / 2e-7 for d in steps])
-        if np.abs(slopes).max() > 3:  # across the place where a contact begins
-            continue
         touched += bool(slopes.any())
-        assert np.abs(slopes - slopes.T).max() < 1e-5
+        # Gauss's rule is right to some percent where curvature jumps within an element.
+        assert np.abs(slopes - slopes.T).max() < (1e-5 if profile is not HEXAGON else 0.05)
     assert touched > 100
 
 
-def test_past_a_corner_it_rests_or_says_that_it_does_not():
-    """Explicit steps may not rest where the vibrissa comes to lie on an edge, over its corner."""
-    case = Case(profile=HEXAGON, sweep=Sweep(stations=5, stop=0.1))
+def test_it_lies_on_edges_and_jumps_over_corners():
+    """Past a hexagon of which nothing is level: where a contact of nodes and elements failed."""
+    case = Case(profile=HEXAGON)
+    assert off(case, 10, 15).max() < 1e-2
+
+
+def any_polygon(seed: int) -> Case:
+    """Corners on a turned ellipse."""
+    random = np.random.default_rng(seed)
+    turn = random.uniform(0, 2 * np.pi) + np.sort(random.uniform(0, 2 * np.pi, 6))
+    corners = random.uniform(0.3, 1.0, 2) * np.column_stack([np.cos(turn), np.sin(turn)])
+    corners[:, 1] += random.uniform(0.3, 0.7) - corners[:, 1].min()
+    return Case(Beam(radius=random.uniform(0.002, 0.01)), polygon(corners))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_polygons_let_it_go_where_the_closed_form_says(seed):
+    assert off(any_polygon(seed), 20, 15).max() < 1e-2
+
+
+@pytest.mark.slow
+def test_a_snap_off_stays_when_the_way_down_is_refined(monkeypatch):
+    from engines.pyelastica import rod
+
+    engine, case = find_engine("pyelastica"), Case(profile=HEXAGON, sweep=Sweep(stations=15))
+    coarse = engine.sweep(case, Settings(segments=10)).snap_off
+    for name, value in {"_TURN": 0.01, "_NEAR": 1e-5, "_DRAG": 1.0, "_ITERATIONS": 1000}.items():
+        monkeypatch.setattr(rod, name, value)
+    assert abs(engine.sweep(case, Settings(segments=10)).snap_off - coarse) < 1e-5
+
+
+def test_what_does_not_come_to_rest_is_not_ok(monkeypatch):
+    """Nor a snap-off: one iteration is enough for what is free."""
+    from engines.pyelastica import rod
+
+    monkeypatch.setattr(rod, "_ITERATIONS", 1)
+    case = replace(named_case("parabola"), sweep=Sweep(stations=8))
     exact, found = solve_sweep(case), find_engine("pyelastica").sweep(case, Settings(segments=10))
-    ok = found.trusted
-    assert ok.sum() >= 3
-    for name in CLAMP_READINGS:
-        apart = np.abs(found.values(name) - exact.values(name))[ok]
-        assert apart.max() < 2e-2 * np.abs(exact.values(name)).max()
+    touches = (exact.table["phase"] != "free").to_numpy()
+    assert found.snap_off is None
+    assert not found.trusted[touches].any()
 
 
 @pytest.mark.parametrize(
