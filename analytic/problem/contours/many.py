@@ -14,12 +14,7 @@ from analytic.problem.contours.profile import Profile, unchecked
 
 
 class Contours:
-    """Contours of any kinds, each with its number.
-
-    Those of one family, as catenaries of any width and height, differ in numbers alone: their
-    functions are called once, with arrays in place of the numbers. All others are called one by
-    one.
-    """
+    """Contours, each with its number; of one family, as catenaries, in one call with arrays."""
 
     def __init__(self, contours: Sequence[Contour]) -> None:
         self.contours = tuple(contours)
@@ -48,7 +43,6 @@ class Contours:
         return np.concatenate([contour.parameter(level) for contour in self.contours])
 
     def at(self, owner: Integers, t: Floats) -> ContourPoint:
-        """Points of the contours."""
         if len(self.contours) == 1:
             return self.contours[0].at(t)
         if len(self._members) == 1:

@@ -21,32 +21,26 @@ class Parallel(Contour):
 
     @property
     def label(self) -> str:  # type: ignore[override]  # it is that of another one
-        """What reports call the contour."""
         return self.of.label
 
     @property
     def t_range(self) -> tuple[float, float]:
-        """Parameters of the ends, those of the contour itself."""
         return self.of.t_range
 
     def at(self, t: Floats) -> ContourPoint:
-        """Points below those of the contour itself, of the same slope."""
         alpha, xi, eta, turning, stretch = self.of.at(t)
         radius = self.radius
         below, aside = radius * np.cos(alpha), radius * np.sin(alpha)
         return ContourPoint(alpha, xi + aside, eta - below, turning, stretch + radius)
 
     def place(self, t: Floats) -> tuple[Floats, Floats]:
-        """Coordinates of points, shape (n,)."""
         xi, eta = self.of.place(t)
         return xi + self.radius * np.sin(t), eta - self.radius * np.cos(t)
 
     def parameter(self, alpha: Floats) -> Floats:
-        """The slope angle itself."""
         return alpha
 
     def breaks(self) -> Floats:
-        """Where the contour itself is not smooth."""
         return self.of.breaks()
 
     def outline(self, begin: float, end: float, points: int) -> Floats:
@@ -54,17 +48,13 @@ class Parallel(Contour):
         return np.column_stack(self.place(np.linspace(begin, end, points)))
 
     def offset(self, radius: float) -> Contour:
-        """The parallel curve that lies farther below."""
         return self if radius == 0 else Parallel(self, radius)
 
     def scaled(self, factor: float) -> Contour:
-        """The parallel curve of the enlarged contour, as many times farther below."""
         return self if factor == 1 else Parallel(self.of.scaled(factor), self.radius * factor)
 
     def mirrored(self) -> Contour:
-        """The parallel curve of the mirror image."""
         return Parallel(self.of.mirrored(), self.radius)
 
     def raised(self, height: float) -> Contour:
-        """The parallel curve of the contour moved up by `height`."""
         return Parallel(self.of.raised(height), self.radius)

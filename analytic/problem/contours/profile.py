@@ -75,23 +75,19 @@ class Profile(Contour):
 
     @property
     def t_range(self) -> tuple[float, float]:
-        """The full turn of the lower side of a convex body; the parameter is the slope angle."""
         return (-np.pi / 2, np.pi / 2)
 
     def at(self, t: Floats) -> ContourPoint:
-        """Points at slope angles `t`, shape (n,)."""
         t = np.asarray(t, dtype=float)
         on = self._on(t)
         stretch = np.where(t == on, self._stretch(on), 0.0)
         return ContourPoint(t, self.xi(on), self.eta(on), np.ones(t.shape), stretch)
 
     def place(self, t: Floats) -> tuple[Floats, Floats]:
-        """Coordinates of the points at slope angles `t`, shape (n,)."""
         on = self._on(t)
         return self.xi(on), self.eta(on)
 
     def parameter(self, alpha: Floats) -> Floats:
-        """The slope angle itself."""
         return alpha
 
     def breaks(self) -> Floats:
@@ -110,7 +106,6 @@ class Profile(Contour):
         return self if radius == 0 else Parallel(self, radius)
 
     def scaled(self, factor: float) -> "Profile":
-        """The contour enlarged by `factor` about the origin, to change its unit of length."""
         if positive("profile.scale", factor) == 1:
             return self
         return self._changed(
@@ -120,7 +115,6 @@ class Profile(Contour):
         )
 
     def raised(self, height: float) -> "Profile":
-        """The contour moved up by `height`."""
         return self._changed(
             eta=partial(_raised, self.eta, height),
             radius_of_curvature=self._stretch,
@@ -146,7 +140,6 @@ class Profile(Contour):
         return changed
 
     def _on(self, alpha: Floats) -> Floats:
-        """The nearest slope angles within the range."""
         low, high = self.alpha_range
         return np.minimum(np.maximum(alpha, low), high)
 
@@ -158,10 +151,7 @@ class Profile(Contour):
         )
 
     def _slope(self, curve: Coordinate, alpha: Floats) -> Floats:
-        """Derivative of `curve`, from polynomials through seven points within the range.
-
-        Of several spacings it is the one that agrees best with the next finer one.
-        """
+        """Derivative of `curve`, from polynomials through seven points within the range."""
         lowest, highest = self.alpha_range
         h = np.minimum(_STEPS, (highest - lowest) / 12 * (_STEPS / _STEPS[0]))[:, None]
         centre = np.minimum(np.maximum(alpha, lowest + 3 * h), highest - 3 * h)
@@ -189,11 +179,7 @@ class Curve(Protocol):
 
 
 def of_curve(curve: Curve, steepest: float, label: str, kinks: tuple[float, ...] = ()) -> Profile:
-    """A contour up to a slope angle on either side.
-
-    It is not searched for waves. What rounding hides is refused all the same, in a fifth of the
-    time.
-    """
+    """A contour up to a slope angle on either side, not searched for waves."""
     parts = curve.xi, curve.eta, (-steepest, steepest), curve.radius, label
     check_convex(*parts, known=True)
     return unchecked(Profile, tuple(part.name for part in fields(Profile)), *parts, kinks)
