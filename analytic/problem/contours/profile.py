@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.convexity import OF_ANGLES, Coordinate, check_convex
-from analytic.problem.contours.parallel import Parallel
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
 
@@ -20,7 +19,6 @@ _STEPS = 5e-3 / 4.0 ** np.arange(4)  # rad
 _STENCIL = np.arange(-3.0, 4.0)  # in steps
 _TO_POWERS = np.linalg.inv(np.vander(_STENCIL, increasing=True))
 
-_Kind = TypeVar("_Kind", bound=Contour)
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,8 @@ class Profile(Contour):
     radius_of_curvature: Coordinate | None = field(default=None, repr=False)
     label: str = "custom profile"
     kinks: tuple[float, ...] = field(default=(), repr=False)
+    # That of the parallel curve from what the functions say, which goes round corners, too [length]
+    distance: float = field(default=0.0, init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("xi", "eta", "radius_of_curvature"):
@@ -80,12 +80,17 @@ class Profile(Contour):
     def at(self, t: Floats) -> ContourPoint:
         t = np.asarray(t, dtype=float)
         on = self._on(t)
-        stretch = np.where(t == on, self._stretch(on), 0.0)
-        return ContourPoint(t, self.xi(on), self.eta(on), np.ones(t.shape), stretch)
+        stretch = np.where(t == on, self._stretch(on), 0.0) + self.distance
+        return ContourPoint(t, *self._place(on, t), np.ones(t.shape), stretch)
 
     def place(self, t: Floats) -> tuple[Floats, Floats]:
-        on = self._on(t)
-        return self.xi(on), self.eta(on)
+        return self._place(self._on(t), t)
+
+    def _place(self, on: Floats, t: Floats) -> tuple[Floats, Floats]:
+        xi, eta = self.xi(on), self.eta(on)
+        if isinstance(self.distance, float) and self.distance == 0:
+            return xi, eta
+        return xi + self.distance * np.sin(t), eta - self.distance * np.cos(t)
 
     def parameter(self, alpha: Floats) -> Floats:
         return alpha
@@ -97,13 +102,16 @@ class Profile(Contour):
 
     def outline(self, begin: float, end: float, points: int) -> Floats:
         """Vertices at equal steps of slope angle: equal steps of the facets' normals."""
-        low, high = self.alpha_range
-        on = np.linspace(max(begin, low), min(end, high), points)
-        return np.column_stack([self.xi(on), self.eta(on)])
+        if self.distance == 0:
+            low, high = self.alpha_range
+            begin, end = max(begin, low), min(end, high)
+        return np.column_stack(self.place(np.linspace(begin, end, points)))
 
-    def offset(self, radius: float) -> Contour:
-        """The parallel curve at distance `radius` below, round the corners at the ends too."""
-        return self if radius == 0 else Parallel(self, radius)
+    def offset(self, radius: float) -> "Profile":
+        if radius == 0:
+            return self
+        positive("radius of the parallel curve", radius)
+        return self._changed(distance=self.distance + radius)
 
     def scaled(self, factor: float) -> "Profile":
         if positive("profile.scale", factor) == 1:
@@ -112,6 +120,7 @@ class Profile(Contour):
             xi=partial(_scaled, self.xi, factor),
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
+            distance=factor * self.distance,
         )
 
     def raised(self, height: float) -> "Profile":
@@ -182,12 +191,12 @@ def of_curve(curve: Curve, steepest: float, label: str, kinks: tuple[float, ...]
     """A contour up to a slope angle on either side, not searched for waves."""
     parts = curve.xi, curve.eta, (-steepest, steepest), curve.radius, label
     check_convex(*parts, known=True)
-    return unchecked(Profile, tuple(part.name for part in fields(Profile)), *parts, kinks)
+    return unchecked(tuple(part.name for part in fields(Profile)), *parts, kinks, 0.0)
 
 
-def unchecked(kind: type[_Kind], names: Sequence[str], *parts: object) -> _Kind:
+def unchecked(names: Sequence[str], *parts: object) -> Profile:
     """A contour of parts that are known to be right, or of arrays that stand for numbers."""
-    found = object.__new__(kind)
+    found = object.__new__(Profile)
     for name, part in zip(names, parts, strict=True):
         object.__setattr__(found, name, part)
     return found
