@@ -1,11 +1,4 @@
-"""The paper's own routes to the tip's angle, and the boundary value problem solved directly.
-
-Slower and less exact than `analytic.solver`, with which they share nothing but the problem: they
-are what it is tested and timed against. Dimensionless, one contact at a time.
-
-The names are listed in ``__init__.pyi`` and loaded when first used: what else is in this folder
-needs none of SciPy's integrators to load.
-"""
+"""The paper's own routes to the tip's angle, slower than `analytic.solver`, which they check."""
 
 import lazy_loader
 

@@ -42,14 +42,7 @@ def integrate_span(
     weight: tuple[float, float] = (0.0, 0.0),
     begin: float | Floats = 0.0,
 ) -> End:
-    """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
-
-    No elliptic integral is used. The span may begin elsewhere, with the upright turned by
-    `clamp_angle` there, and end at `length`.
-
-    The initial value problem of section 5 takes kappa from a square root that vanishes at the
-    contact, where its solution is not unique; m' = f cos(phi - alpha) is smooth throughout.
-    """
+    """March from the clamp along the loaded span (Will et al., eqs. 4 and 15)."""
     from scipy.integrate import solve_ivp  # slow to load, and a plain sweep needs none of it
 
     n = len(moment)

@@ -59,10 +59,7 @@ def misses_of_two(
     compliance: float,
     span: Span,
 ) -> tuple[Floats, Floats]:
-    """The largest miss of both contacts, and that of the balance of moments; dimensionless.
-
-    Of place, slope angle and direction of force of each, and of the moment at the outer one.
-    """
+    """The largest miss of both contacts, and of the balance of moments at the outer one."""
     lean, push = np.arctan(friction), np.sqrt(1 + friction**2)
     force_x, force_y, moment = (read[name] for name in ("force_x", "force_y", "moment_z"))
     foot_y = read.get("foot_y", np.zeros_like(force_x))

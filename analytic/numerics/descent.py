@@ -7,11 +7,7 @@ from analytic.problem.arrays import Floats
 
 
 def barring_forces(compliance: Floats, gaps: Floats, singular: float) -> Floats:
-    """The forces f >= 0 that keep gaps + compliance . f >= 0 where they act.
-
-    They are least squares with the compliance's square root; `singular` is added to its diagonal,
-    for constraints that are alike.
-    """
+    """The forces f >= 0 that keep gaps + compliance . f >= 0 where they act, by least squares."""
     root = np.linalg.cholesky(compliance + singular * np.eye(len(gaps)))
     forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
     return np.asarray(forces)

@@ -1,8 +1,4 @@
-"""Cubics with given values and derivatives at both ends of an interval, many at a time.
-
-`scipy.interpolate.CubicHermiteSpline` is one curve through points in order; these are of intervals
-that may be anywhere, each with its own length, and some next to nothing long.
-"""
+"""Cubics with given values and derivatives at both ends of intervals, many at a time."""
 
 import numpy as np
 

@@ -1,8 +1,4 @@
-"""Small systems of equations, many at a time, by Newton's method with Broyden's updates.
-
-The Jacobian is given, kept up by rank-one updates (Broyden, Math. Comp. 19, 1965), and taken anew
-where a step gained little. It decides how fast the solution comes, not how exact it is.
-"""
+"""Small systems of equations, many at a time, by Newton's method with Broyden's updates (1965)."""
 
 from collections.abc import Callable
 from typing import TypeAlias

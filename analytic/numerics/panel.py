@@ -47,7 +47,6 @@ class Panel(NamedTuple):
         flexibility: Callable[[Floats], Floats],
         curvature: Callable[[Floats], Floats],
     ) -> "Panel":
-        """The panel between two places."""
         length = end - begin
         s = begin + _SHARES * length
         flexible, natural = flexibility(s), curvature(s)

@@ -20,13 +20,7 @@ _AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at mos
 
 
 def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Floats) -> Floats:
-    """Where `function` changes its sign between `low` and `high`.
-
-    Chandrupatla's method (Adv. Eng. Software 28, 1997): inverse quadratic interpolation where three
-    values allow it, bisection elsewhere. A call of NumPy takes as long for one number as for sixty,
-    so that few zeros are sought at several places at once: crowded about what interpolation says,
-    or evenly spaced. Where the function jumps, it is the place of the jump.
-    """
+    """Where `function` changes its sign, or jumps (Chandrupatla, Adv. Eng. Software 28, 1997)."""
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
     if not low.size:
         return low
@@ -57,12 +51,7 @@ def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Flo
 def smooth_zeros(
     function: Callable[[Integers, Floats], Floats], low: Floats, high: Floats, likely: Floats
 ) -> Floats:
-    """`zeros` of functions that are smooth but of few, and whose zeros are nearly known.
-
-    Lagrange's inverse interpolation, through values about the likely place, takes one call of the
-    function. Where the sign does not change there, or polynomials through one value less differ, it
-    is `zeros`.
-    """
+    """`zeros` of smooth functions, nearly known: by Lagrange's inverse interpolation."""
     if not low.size:
         return low
     about = Surroundings.of(low, high, likely)
@@ -81,7 +70,6 @@ class Surroundings(NamedTuple):
 
     @classmethod
     def of(cls, low: Floats, high: Floats, likely: Floats) -> "Surroundings":
-        """Between bounds."""
         width = high - low
         centre = np.clip(likely, low + _NEAR * width, high - _NEAR * width)
         return cls(np.where(np.isfinite(centre), centre, low + width / 2), _NEAR * width)
@@ -118,7 +106,6 @@ class Surroundings(NamedTuple):
 
 
 def zero(function: Callable[[Floats], Floats], low: float, high: float) -> float:
-    """`zeros` of a function with one zero."""
     return float(zeros(lambda _, x: function(x), np.array([low]), np.array([high]))[0])
 
 

@@ -1,7 +1,4 @@
-"""A walk along a way: where a gap closes and opens, and where what is followed changes.
-
-How closely is for each walker to say, and what it follows, too.
-"""
+"""A walk along a way: where a gap closes and opens, and where what is followed changes."""
 
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeVar
@@ -21,10 +18,7 @@ class WalkEvent(NamedTuple):
 def first_touch(
     gap: Callable[[float], float], begin: float, ends: Iterable[float], within: float
 ) -> float | None:
-    """Where a gap closes first, from where it is open.
-
-    Up to each end in turn it is convex, and changes by no more than the travel does.
-    """
+    """Where a gap closes first; to each end it is convex and changes by no more than the travel."""
     from scipy.optimize import minimize_scalar  # slow to load, and stating a case needs none of it
 
     low = begin

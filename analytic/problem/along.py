@@ -1,8 +1,4 @@
-"""A quantity that varies along the vibrissa: a function of arc length, piece by piece.
-
-Functions and tables become Chebyshev series, to rounding. So the quantity is a value: it can be
-compared, hashed, pickled and written to a file, and integrated exactly.
-"""
+"""A quantity that varies along the vibrissa: pieces of Chebyshev series by arc length, a value."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -69,11 +65,7 @@ class Along:
 
     @classmethod
     def of(cls, name: str, given: object, length: float) -> "float | Along":
-        """What was given as a function of arc length or as a table.
-
-        Between a table's points the monotone cubics of Fritsch and Butland interpolate
-        (`scipy.interpolate.PchipInterpolator`): smooth, and never beyond its neighbours.
-        """
+        """What was given as a function of arc length or as a table; monotone between its points."""
         if isinstance(given, Mapping):  # as a file has it
             given = cls(given.get("ends", ()), given.get("series", ()))
         if isinstance(given, cls):
@@ -90,7 +82,6 @@ class Along:
 
     @classmethod
     def through(cls, pieces: Sequence[Chebyshev]) -> "Along":
-        """From pieces next to each other."""
         ends = [piece.domain[0] for piece in pieces]
         series = tuple(tuple(piece.coef.tolist()) for piece in pieces)
         return cls((*ends, pieces[-1].domain[1]), series)
@@ -104,7 +95,6 @@ class Along:
         return repr(self)
 
     def __call__(self, s: Floats) -> Floats:
-        """Values at arc lengths."""
         s = np.clip(s, self.ends[0], self.ends[-1])
         i = np.searchsorted(self._inner, s, side="right")
         x = (s - self._middle[i]) / self._half[i]
@@ -172,12 +162,10 @@ class Along:
 
 
 def values_at(quantity: float | Along, s: Floats) -> Floats:
-    """A quantity at arc lengths, whether it varies or not."""
     return quantity(s) if isinstance(quantity, Along) else np.full_like(s, quantity)
 
 
 def rescaled(quantity: float | Along, factor: float, stretch: float = 1.0) -> float | Along:
-    """A quantity in other units, whether it varies or not."""
     if isinstance(quantity, Along):
         return quantity.times(factor, stretch)
     return quantity * factor
@@ -217,10 +205,7 @@ def _interpolated(name: str, given: object, length: float) -> Along:
 def sampled(
     name: str, function: Callable[[Floats], Floats], length: float, breaks: Sequence[float] = ()
 ) -> Along:
-    """The series of a function, on pieces that are halved until it is exact there.
-
-    At `breaks` it is known not to be smooth: no piece goes on beyond.
-    """
+    """The series of a function, on pieces halved until it is exact; at `breaks` it may be rough."""
 
     def on(begin: float, end: float) -> tuple[Chebyshev, bool]:
         """A piece, and whether it is exact."""

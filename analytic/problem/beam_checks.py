@@ -32,7 +32,6 @@ def checked_rigidity(given: object, length: float, of_cone: bool) -> float | Alo
 
 
 def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[float, float | None]:
-    """The radii of a vibrissa at its clamp and at its tip."""
     remedy = "a vibrissa is slender: check the units of radius and length"
     base = within("beam.radius", radius, 0.0, math.nextafter(_THICKEST * length, 0), remedy)
     if tip_radius is None:
@@ -43,7 +42,6 @@ def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[fl
 
 
 def checked_curvature(given: object, length: float) -> float | Along:
-    """The natural curvature of a vibrissa."""
     name, remedy = "beam.natural_curvature", "beyond, it is curved back to the foot line"
     found = Along.of(name, given, length) if _may_vary(given) else given
     if not isinstance(found, Along):
@@ -57,5 +55,4 @@ def checked_curvature(given: object, length: float) -> float | Along:
 
 
 def _may_vary(given: object) -> bool:
-    """Whether something is given as a function or a table, not as a number."""
     return callable(given) or (hasattr(given, "__len__") and not isinstance(given, str | bytes))

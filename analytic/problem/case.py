@@ -242,10 +242,7 @@ class Case(AnyCase, Shown):
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Contour parameters of the leftmost and the rightmost point within reach.
-
-        A sweep to the left touches the right one first, one to the right the left one.
-        """
+        """Contour parameters of the leftmost and the rightmost point within reach."""
         if isinstance(self.sweep, Sweep):
             return contact_range(self.centreline)
         highest = float(self.poses.at(self.way).foot_y.max())

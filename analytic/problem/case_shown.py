@@ -14,12 +14,10 @@ if TYPE_CHECKING:
 
 
 def described(beam: Beam) -> str:
-    """A vibrissa in a few words."""
     return f"length {beam.length:g}, EI {beam.base_rigidity:g}, radius {beam.radius:g}"
 
 
 def draw(case: "Case", ax: "Axes") -> None:
-    """Object, way and vibrissa, in the case's unit of length."""
     for one in (case, *case.alone):
         xi, eta = one.outline()
         ax.fill_between(xi, eta, eta.max(), color="#dddddd", linewidth=0)

@@ -23,8 +23,6 @@ _LEAST = 1e-9  # rad or L; stations must differ by more than rounding
 
 
 class ClampWay(ABC):
-    """A way of the clamp, station by station."""
-
     running: ClassVar[Running]
 
     @property
@@ -141,11 +139,9 @@ class Whisk(TurningWay):
 
     @property
     def direction(self) -> Direction:
-        """Where the clamp turns to."""
         return "left" if self.stop > self.start else "right"
 
     def stations_along(self, length: float) -> Floats:
-        """Values of that column."""
         return np.linspace(self.start, self.stop, self.stations)
 
     def poses(self, length: float) -> Poses:
@@ -153,11 +149,9 @@ class Whisk(TurningWay):
         return Straight((self.foot_x / length, 0.0, 0.0), (0.0, 0.0, -1.0))
 
     def mirrored(self) -> "Whisk":
-        """The mirror image, x to -x."""
         return Whisk(0.0 - self.foot_x, 0.0 - self.start, 0.0 - self.stop, self.stations)
 
     def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Whisk":
-        """The same way with the foot elsewhere, in a clamp that leans more [length, rad]."""
         return Whisk(self.foot_x + x, self.start + angle, self.stop + angle, self.stations)
 
 
@@ -206,7 +200,6 @@ class ClampPath(TurningWay):
 
     @property
     def stations(self) -> int:
-        """How many."""
         return len(self.foot_x)
 
     @property
@@ -230,11 +223,9 @@ class ClampPath(TurningWay):
         return Through(tuple((-travelled(given)).tolist()), tuple(map(tuple, given.tolist())))
 
     def mirrored(self) -> "ClampPath":
-        """The mirror image, x to -x."""
         x, angle = (-np.array(values) for values in (self.foot_x, self.clamp_angle))
         return ClampPath(x.tolist(), self.foot_y, angle.tolist())
 
     def shifted(self, x: float = 0.0, angle: float = 0.0) -> "ClampPath":
-        """The same way with the foot elsewhere, in a clamp that leans more [length, rad]."""
         foot, leans = np.array(self.foot_x) + x, np.array(self.clamp_angle) + angle
         return ClampPath(foot.tolist(), self.foot_y, leans.tolist())

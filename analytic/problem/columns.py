@@ -40,8 +40,6 @@ STATUS_NUMBER = {word: number for number, word in enumerate(STATUSES)}
 
 
 class Column(NamedTuple):
-    """A column of numbers."""
-
     dimension: Literal["length", "force", "moment", "force/length", "angle"]
     odd: bool = False  # changes its sign in a mirror, x to -x
 

@@ -81,7 +81,6 @@ def near(word: object, known: Iterable[str], otherwise: str = "choose one") -> s
 def unknown(
     name: str, word: object, known: Iterable[str], *, more: str = "", remedy: str = "choose one"
 ) -> InputError:
-    """The error for such a word."""
     known = [*known]
     allowed = f"one of {', '.join(known)}{more}"
     return InputError(name, repr(word)[:120], allowed, near(word, known, remedy))

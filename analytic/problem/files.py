@@ -10,7 +10,6 @@ from analytic.problem.errors import InputError
 
 
 def as_path(path: object, name: str) -> Path:
-    """A path from what was given as one."""
     if not isinstance(path, str | os.PathLike):
         raise InputError(name, f"a {type(path).__name__}", "a path", "as 'folder/name'")
     return Path(path)
@@ -35,11 +34,7 @@ def regular_file(path: str | Path, name: str, largest: int) -> Path:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Write to the yielded path; it becomes `path` when the block ends without an error.
-
-    Whatever happens nothing unfinished stays behind, unless the process is killed. The name is
-    unique, so that two processes may write the same file at the same time: the last one wins.
-    """
+    """Write to the yielded path; it becomes `path` when the block ends without an error."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}-{uuid.uuid4().hex[:8]}.partial")
     try:
         yield unfinished

@@ -24,11 +24,7 @@ def first_on_way(
     poses: Poses,
     ends: tuple[float, float],
 ) -> FirstTouch | None:
-    """The first contact between two parameters of a way, the first one larger; None if none is.
-
-    Where each place of the contour passes the vibrissa, gone on straight beyond its tip, is
-    enclosed; the first such place is next to the contact, which is at the tip or goes along.
-    """
+    """The first contact between two parameters of a way, the first one larger; None if none is."""
     t = np.linspace(*reach, _CONTOUR)
     breaks = contour.breaks()
     t = np.unique(np.concatenate([t, breaks[(breaks > reach[0]) & (breaks < reach[1])]]))
@@ -62,10 +58,7 @@ def first_on_way(
 def _apart(
     contour: Contour, t: Floats, rest: Unloaded, pose: Pose
 ) -> tuple[Floats, Floats, Booleans]:
-    """By how much places of the contour lie to the right of the vibrissa, at which arc length.
-
-    And whether they lie ahead of the clamp.
-    """
+    """How far places of the contour are right of the vibrissa, at which arc length; if ahead."""
     point = contour.at(t)
     x, y = pose.seen(point.xi[:, None], point.eta[:, None])
     s = np.linspace(0, 1, _VIBRISSA)

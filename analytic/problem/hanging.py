@@ -48,10 +48,7 @@ def hang(
     compliance: float = 0.0,
     phase: float = _OF_ENDS,
 ) -> Hung:
-    """The ends beyond arc lengths `begin`, held at slope angles there; shape (n,).
-
-    What holds them may turn by `compliance` times the moment. Panels end where `phase` is reached.
-    """
+    """The ends beyond arc lengths `begin`, shape (n,), held at slope angles by what may turn."""
     places = _panels(rod, phase)
     first = max(
         int(np.searchsorted(places, np.fmin.reduce(begin, initial=1.0), side="right")) - 1, 0
@@ -114,7 +111,6 @@ class AtRest(NamedTuple):
 
 @lru_cache(64)
 def at_rest(rod: RodProperties, compliance: float) -> AtRest:
-    """The whole vibrissa under its weight."""
     unloaded = rod.unloaded
     slope, clamp = np.array([np.pi / 2 + unloaded.angle]), np.zeros(1)
     hung = hang(rod, slope, clamp, compliance, _ALL_ALONG)

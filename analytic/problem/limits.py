@@ -64,7 +64,6 @@ class AnyCase(OfVibrissa):
         return self._require_line(who)
 
     def require_one_object(self, who: str) -> None:
-        """Refuse several objects."""
         if self.others:
             allowed = f"1: {who} can take no more"
             remedy = "solve it in closed form (exact), or sweep past one"

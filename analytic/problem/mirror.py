@@ -9,11 +9,7 @@ from analytic.problem.readings import Readings
 
 
 def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
-    """The readings of a case, whichever way its foot moves.
-
-    Without friction and gravity a sweep to the right is the mirror image of a sweep to the left
-    past the mirrored object, and nothing else has to be solved.
-    """
+    """The readings of a case; a sweep to the right is the mirror image of one to the left."""
     return facing(case, solve(leftward(case)))
 
 

@@ -72,7 +72,6 @@ REAL_CASE_NAMES = tuple(
 
 
 def named_contour(name: str) -> Contour:
-    """The contour of one of the named cases."""
     numbers = dict(NAMED_TABLES[name]["profile"])
     return CONTOURS[numbers.pop("kind")](**numbers)
 

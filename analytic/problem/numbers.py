@@ -26,7 +26,6 @@ def is_finite_number(value: object) -> TypeGuard[float]:
 def within(
     name: str, value: object, low: float, high: float = LARGEST, remedy: str = "correct it"
 ) -> float:
-    """A number from `low` to `high`."""
     if not (is_finite_number(value) and low <= float(value) <= high):
         kind = "positive" if low > 0 else "finite"
         raise InputError(name, value, f"a {kind} number between {low:g} and {high:g}", remedy)
@@ -34,7 +33,6 @@ def within(
 
 
 def whole(name: str, value: object, low: int, high: int) -> int:
-    """A whole number from `low` to `high`."""
     number = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else low - 1
     if not low <= number <= high:
         raise InputError(name, value, f"a whole number, {low} to {high:,}", "200 is usual")
@@ -68,13 +66,11 @@ def floats(name: str, value: object, shape: Sequence[int | None], allowed: str) 
 
 
 def pair(name: str, value: object) -> tuple[float, float]:
-    """Two finite numbers."""
     first, second = floats(name, value, (2,), "two numbers, as (0.0, 0.5)").tolist()
     return first, second
 
 
 def points_of(name: str, value: object) -> Floats:
-    """Points of the plane, at least three."""
     points = floats(name, value, (None, 2), "a list of points (x, y)")
     if len(points) < 3:
         raise InputError(name, f"{len(points)} points", "three or more", "add some")

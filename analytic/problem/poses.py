@@ -36,8 +36,6 @@ class Pose(NamedTuple):
 
 
 class Poses(Protocol):
-    """A way of the clamp."""
-
     def at(self, p: Floats) -> Pose:
         """Poses, shape of `p`."""
 
@@ -53,11 +51,9 @@ class Straight:
     step: tuple[float, float, float]
 
     def at(self, p: Floats) -> Pose:
-        """Poses."""
         return Pose(*(here + p * step for here, step in zip(self.origin, self.step, strict=True)))
 
     def rate(self, p: Floats) -> Pose:
-        """Their derivatives, the same everywhere."""
         return Pose(*(np.full_like(p, step) for step in self.step))
 
 
@@ -74,13 +70,11 @@ class Through:
     poses: tuple[tuple[float, float, float], ...]
 
     def at(self, p: Floats) -> Pose:
-        """Poses."""
         inside = np.clip(p, self.p[-1], self.p[0])
         beyond = np.asarray(p - inside)[..., None]
         return Pose(*np.moveaxis(self._between(inside) + beyond * self._rate(inside), -1, 0))
 
     def rate(self, p: Floats) -> Pose:
-        """Their derivatives."""
         return Pose(*np.moveaxis(self._rate(np.clip(p, self.p[-1], self.p[0])), -1, 0))
 
     @cached_property

@@ -9,7 +9,6 @@ from analytic.problem.support import RECORDED
 
 
 def check_provenance(provenance: Mapping[str, Any]) -> None:
-    """Refuse what readings could not use."""
     for name, known in (("events", None), ("support", RECORDED)):
         value = provenance.get(name, {})
         fits = isinstance(value, Mapping) and (known is None or set(value) <= known)

@@ -22,7 +22,6 @@ class Quantity:
     positive: bool = False  # whether it cannot be negative
 
     def at(self, case: Case, value: float) -> Case:
-        """The case with that value."""
         return self.larger(case, value - self.value(case))
 
 

@@ -1,8 +1,4 @@
-"""What geometry alone says of a sweep: where it can touch, and where it no longer can.
-
-Lengths here are in units of the vibrissa's length; ``centreline`` is the contour that the
-vibrissa's centreline feels (`Contour.offset`).
-"""
+"""Where a sweep can touch by geometry alone; lengths in L, on the contour the centreline feels."""
 
 import numpy as np
 
@@ -66,10 +62,7 @@ def _check_place(contour: Contour, ends: tuple[float, float]) -> None:
 
 
 def _height_one(t: Floats, eta: Floats, contour: Contour) -> tuple[float, float]:
-    """Where the contour passes the height 1 on both sides of its lowest point, or its ends.
-
-    From its parameters and heights on a grid, shape (2, n): from the lowest point to either end.
-    """
+    """Where the contour passes the height 1 on both sides of its lowest point, or its ends."""
     ends = t[:, -1].copy()
     sides = np.flatnonzero(eta[:, -1] > 1)
     if sides.size:

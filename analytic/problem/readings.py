@@ -89,10 +89,7 @@ class Readings(OfVibrissa, SweepTable):
             return made[name]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What copies and files of Python's have: a table that is still to be made is made there.
-
-        So is one that a worker has solved: it need not load what tables take.
-        """
+        """What copies and pickles have: of readings with a table still to be made, that table."""
         make = self.__dict__.get("_to_make", {}).get("table")
         kept = [part.name for part in fields(self) if make is None or part.name != "table"]
         unmade = {} if make is None else {"_to_make": {"table": make}}
@@ -157,11 +154,7 @@ class Readings(OfVibrissa, SweepTable):
 
     @property
     def bends_left(self) -> bool:
-        """Whether the vibrissa bends to the left, as when its foot moves to the right.
-
-        The clamp's moment is negative then. The sum over the sweep decides, so that the noise of a
-        hardly loaded station does not.
-        """
+        """Whether the vibrissa bends to the left, by the sum of the clamp's moments."""
         return float(np.nansum(self.values("moment_z"))) < 0
 
     @property
@@ -314,11 +307,7 @@ def solved_readings(
     provenance: Callable[[], Mapping[str, Any]],
     snap_off: float | None,
 ) -> Readings:
-    """Readings of a solver's own columns, all finite floats or numbers of words: not checked.
-
-    Table and provenance are made when they are first asked for: many sweeps are asked for their
-    snap-off only.
-    """
+    """Readings of a solver's own columns, not checked; the table is made when first asked for."""
     found = object.__new__(Readings)
     to_make = {"table": partial(_table, columns), "provenance": provenance}
     parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}

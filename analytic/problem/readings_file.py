@@ -25,8 +25,6 @@ _DAMAGED = (*_NO_TABLE, OSError, RecursionError, MemoryError, pa.ArrowException)
 
 
 class FileContent(NamedTuple):
-    """What a file of readings holds."""
-
     # beam, source and provenance as `write_file` wrote them; empty if there are none.
     metadata: dict[str, Any]
     table: pd.DataFrame

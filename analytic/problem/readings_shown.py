@@ -18,7 +18,6 @@ _ROWS = 8
 
 
 def as_text(readings: "SweepTable") -> str:
-    """A sweep in a few lines: how long, how large, which phases."""
     beam, running = readings.beam, readings.running_values
     beyond = "".join(f", {name} {value:g}" for name, value in readings.beyond_the_paper.items())
     loads = [name for name in readings.sensed if not name.startswith("foot")]
@@ -60,7 +59,6 @@ def new_axes(readings: "SweepTable", figure: "Figure | None" = None) -> "list[Ax
 
 
 def draw(readings: "SweepTable", axes: "Sequence[Axes]") -> None:
-    """Force and moment at the clamp along the sweep."""
     along, trusted = readings.running_values, readings.trusted
     label = readings.source.replace("$", r"\$")
     for ax, names in zip(axes, readings.panels.values(), strict=True):

@@ -94,7 +94,6 @@ class Recorder(AnyRecorder[Readings]):
     case: Case
 
     def readings(self) -> Readings:
-        """All rows, in the units of the case's beam."""
         beam = self.case.beam
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
         for name in WORDS:

@@ -22,8 +22,6 @@ _KNOWN = 512  # panels: a sweep of a stiff vibrissa asks for some ten, a calibra
 
 @dataclass(frozen=True)
 class RodProperties:
-    """Rigidity, natural curvature and radius of a vibrissa along its length."""
-
     unloaded: Unloaded  # natural curvature and radius
     # EI(s)/EI(0); or the ratio of a cone's radii, whose fourth power it follows.
     rigidity: Along | float
@@ -35,7 +33,6 @@ class RodProperties:
     def of(
         cls, beam: Beam, rest: Unloaded, weight: tuple[float, float] = (0.0, 0.0)
     ) -> "RodProperties":
-        """What varies along a beam of a shape at rest, and its weight."""
         w_x, w_y = (w * beam.length / beam.force_unit for w in weight)
         rigidity: Along | float = rest.tip_radius / rest.base_radius if rest.base_radius else 1.0
         if isinstance(beam.flexural_rigidity, Along):
@@ -61,7 +58,6 @@ class RodProperties:
         return np.asarray(inverse**2 if self.share == 1 else inverse ** (2 * self.share))
 
     def panel(self, begin: Floats, end: Floats) -> Panel:
-        """The form between two places."""
         return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
 
     @cached_property

@@ -26,7 +26,6 @@ class Shown:
         raise NotImplementedError
 
     def _draw(self, figure: "Figure") -> None:
-        """The picture."""
         raise NotImplementedError
 
     def _below(self) -> str:
@@ -38,7 +37,6 @@ class Shown:
         return f"{type(self).__name__}({said})"
 
     def _repr_html_(self) -> str:
-        """Tiles and a picture, for a notebook."""
         tiles = "".join(
             f'<div style="{_TILE}"><small>{escape(name)}</small><br>{escape(str(value))}</div>'
             for name, value in self._tiles().items()

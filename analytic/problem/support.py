@@ -34,7 +34,6 @@ class Support(NamedTuple):
         return self == UPRIGHT
 
     def mirrored(self) -> "Support":
-        """The mirror image, x to -x."""
         weight = 0.0 - self.weight[0], self.weight[1]
         return self._replace(clamp_angle=0.0 - self.clamp_angle, weight=weight)
 
@@ -63,7 +62,6 @@ RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}
 
 
 def check_support(held: Support, beam: Beam, signed: bool = False) -> None:
-    """Refuse a clamp or a friction that cannot be."""
     clamp_stiffness, friction, clamp_angle, weight = held
     if not (isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf):
         remedy = "it is moment by angle, at least a hundredth of EI/L; a rigid clamp has none"
@@ -99,7 +97,6 @@ def is_plain(beam: Beam, held: Support) -> bool:
 
 
 def require_uniform(who: str, beam: Beam) -> None:
-    """Refuse a vibrissa that varies along its length."""
     for name in ("flexural_rigidity", "natural_curvature"):
         value = getattr(beam, name)
         if isinstance(value, Along):
@@ -111,14 +108,12 @@ def require_uniform(who: str, beam: Beam) -> None:
 
 
 def require_weightless(who: str, held: Support) -> None:
-    """Refuse a vibrissa that has a weight."""
     for name, value in zip(_WEIGHT, held.weight, strict=True):
         if value:
             raise InputError(name, value, f"0: {who} cannot take it into account", "leave it out")
 
 
 def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
-    """Refuse what someone cannot take into account."""
     require_uniform(who, beam)
     require_weightless(who, held)
     for name, value, plain in (
@@ -158,7 +153,6 @@ def support_record(held: Support) -> dict[str, Any]:
 
 
 def support_of(provenance: Mapping[str, Any]) -> Support:
-    """The clamp and the friction that readings were made with."""
     held = provenance.get("support", {})
     stiffness = float(held.get("clamp_stiffness") or math.inf)
     friction, angle = (float(held.get(name) or 0.0) for name in ("friction", "clamp_angle"))

@@ -75,10 +75,7 @@ class SweepTable(Shown):
 
     @property
     def trusted(self) -> Booleans:
-        """Stations whose sensed values may be used, shape (stations,).
-
-        That is: no status speaks against them, and none of the values is a gap.
-        """
+        """Stations of status ok whose sensed values are no gaps, shape (stations,)."""
         from analytic.problem.table import says
 
         fine = np.isfinite(self.values(*self.sensed)).all(axis=1)

@@ -72,7 +72,6 @@ def check_columns(table: pd.DataFrame, sensed: tuple[str, ...], source: str) -> 
 
 
 def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
-    """Columns of readings as a table."""
     return pd.DataFrame(
         {
             name: _words(name).take(values.astype(np.intp)) if name in WORDS else values
@@ -97,7 +96,6 @@ def _words(name: str) -> "pd.api.extensions.ExtensionArray":
 
 
 def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
-    """A table of readings in a mirror, x to -x."""
     return table.assign(**_turned_over(table))
 
 
@@ -136,7 +134,6 @@ def _number(cell: object) -> float:
 def check_words(
     column: "pd.Series[Any]", name: str, allowed: tuple[str, ...], place: Place
 ) -> None:
-    """Refuse a word that may not stand in a column."""
     if isinstance(column.dtype, pd.StringDtype) and set(column.unique()) <= set(allowed):
         return
     odd = ~column.astype(str).isin(allowed).to_numpy()

@@ -40,7 +40,6 @@ class Unloaded:
         return not isinstance(self.natural, Along) and self.base_radius == self.tip_radius
 
     def curvature(self, s: Floats) -> Floats:
-        """Natural curvature."""
         return values_at(self.natural, s)
 
     def taper(self, s: Floats) -> Floats:
@@ -66,18 +65,13 @@ class Unloaded:
         return -chord * np.sin(turned / 2), chord * np.cos(turned / 2), np.pi / 2 + turned
 
     def turn_between(self, begin: Floats, end: float) -> Floats:
-        """By how much the slope grows along a part."""
         if isinstance(self.natural, Along):
             turn = self._integrals[2]
             return turn(np.array(end)) - turn(begin)
         return self.natural * (end - begin)
 
     def side(self, begin: Floats) -> Floats:
-        """Length of the side that touches an object, from a place to the tip.
-
-        Of a cone it goes along at the half-angle to the axis; where the vibrissa is curved to the
-        left, towards the object, it is shorter than the axis.
-        """
+        """Length of the side that touches an object, from a place to the tip."""
         left, narrowing = 1 - begin, self.base_radius - self.tip_radius
         turn = self.turn_between(begin, 1.0)
         # The radius times the curvature, integrated by parts: the radius is linear.

@@ -45,13 +45,9 @@ class Branch:
         return self.samples.foot_x
 
     def events(self) -> dict[str, int | None]:
-        """What happens, and at which point; None where it does not.
-
-        Where the equilibrium is the last one that is stable in space, the vibrissa leaves the
-        plane: at the contour's lowest point, or at what a sweep along a polygon visits last before
-        it passes that in a jump; see `analytic.from_clamp.sideways`.
-        """
+        """What happens, and at which point; None where it does not."""
         start, end = phase_limits(self.tangent)
+        # The last that is stable in space: the lowest, or what comes before it is passed in a jump.
         before = np.where(self.t >= self.lowest, self.foot_x, np.inf)
         return {
             "first_contact": 0,
@@ -94,10 +90,7 @@ _Part: TypeAlias = tuple[Floats, Samples]
 
 
 def _to_snap_off(t: Floats, samples: Samples) -> _Part:
-    """Up to the least foot position, at least two points.
-
-    Where x0 turns at a phase limit, as on a polygon, that is found twice: the first one is it.
-    """
+    """Up to the least foot position, at least two points; of one found twice the first."""
     snap_off = t[np.argmin(samples.foot_x)]
     least = int(np.argmax(t <= snap_off + _ROUNDING * max(1.0, abs(snap_off))))
     which = np.arange(least + 1) if least else np.zeros(2, dtype=int)
@@ -105,11 +98,7 @@ def _to_snap_off(t: Floats, samples: Samples) -> _Part:
 
 
 def _refine(many: Contours, parts: list[_Part], folds: Grid) -> None:
-    """Put the snap-off where x0 is least, where that is not known.
-
-    It is where the derivative of x0 vanishes, unless that is inexact, as without a radius of
-    curvature: then x0 is lower next to it.
-    """
+    """Put the snap-off where x0 is least, where that is not known."""
     folded = set(zip(folds.owner.tolist(), folds.t.tolist(), strict=True))
     for i, (t, samples) in enumerate(parts):
         at, width, foot_x = float(t[-1]), float(t[-2] - t[-1]), float(samples.foot_x[-1])

@@ -32,16 +32,13 @@ class Units(NamedTuple):
 
     @classmethod
     def of(cls, beam: Beam) -> "Units":
-        """Those of a beam."""
         return cls(beam.length, beam.force_unit, beam.moment_unit)
 
     @classmethod
     def of_each(cls, beams: Sequence[Beam], whose: Integers) -> "Units":
-        """Those of the beams of contacts."""
         return cls(*np.array([cls.of(beam) for beam in beams]).T[:, whose])
 
     def part(self, chosen: Booleans) -> "Units":
-        """Those of some contacts."""
         return Units(*(np.broadcast_to(unit, chosen.shape)[chosen] for unit in self))
 
 

@@ -26,10 +26,7 @@ def surplus(contour: Contour, t: Floats) -> Floats:
 
 
 def surplus_and_rate(point: ContourPoint) -> tuple[Floats, Floats]:
-    """`surplus` and its derivative along the contour.
-
-    With the tangential contact's q' = -1/C and (C sin + S cos)' = across - 1/C by the slope angle.
-    """
+    """`surplus`, and its derivative along the contour."""
     states = tangent_contact(point)
     alpha, _, eta, turning, stretch = states.point
     up, across = states.frame

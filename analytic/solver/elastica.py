@@ -133,10 +133,7 @@ def frame(span: Span, alpha: Floats) -> Frame:
 
 
 def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
-    """Derivatives of `span` with respect to the excess rotation, at fixed alpha.
-
-    From dF/dk, dE/dk and d(psi_0)/dk (Byrd and Friedman, 710.07 and 710.09).
-    """
+    """Derivatives of `span` by the excess (Byrd and Friedman, 710.07 and 710.09)."""
     q, C, S = span
     angle = excess + np.abs(alpha)  # pi/2 - theta_1
     sin_1, cos_1 = np.cos(angle), np.sin(angle)
@@ -164,11 +161,7 @@ def span_by_excess_twice(span: Span, by_excess: Span, excess: Floats, alpha: Flo
 
 
 def span_by_alpha(span: Span, by_excess: Span, alpha: Floats) -> Span:
-    """Derivatives of `span` with respect to alpha, at fixed excess rotation.
-
-    Both limits of the integrals move. The upper one, pi/2 - alpha, contributes the integrand at
-    the clamp; the lower one, theta_1 = pi/2 - w - |alpha|, what the excess does.
-    """
+    """Derivatives of `span` by alpha, at fixed excess: both limits of the integrals move."""
     side = np.where(alpha < 0, -1.0, 1.0)
     return Span(
         side * by_excess.q - 1 / span.C,

@@ -1,7 +1,4 @@
-"""Both contact phases at given points of the contour: forces, foot position and its derivative.
-
-Dimensionless throughout, on the contour that the centreline feels.
-"""
+"""Both contact phases at points of the contour the centreline feels; dimensionless throughout."""
 
 from typing import NamedTuple
 
@@ -24,10 +21,7 @@ from analytic.solver.tip import tip_state
 
 
 class Equilibria(NamedTuple):
-    """Vibrissae at rest against points of the contour; every array has shape (n,).
-
-    NaN in `excess` marks points that no vibrissa can reach.
-    """
+    """Vibrissae at rest against points, shape (n,); NaN in `excess` where none can reach."""
 
     point: ContourPoint
     tip_rotation: Floats
@@ -38,7 +32,6 @@ class Equilibria(NamedTuple):
 
     @property
     def arc_length(self) -> Floats:
-        """Arc length s1 of the contact."""
         return np.where(self.tangent, self._tangent_length, 1.0)
 
     @property
@@ -109,11 +102,7 @@ class LengthRates(NamedTuple):
 def tip_rates(
     tip_rotation: Floats, loaded: Span, alpha: Floats, end: Frame | None = None
 ) -> tuple[LengthRates, LengthRates]:
-    """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation.
-
-    With alpha the lower limit of the integrals moves as with the excess rotation, the other way for
-    alpha < 0; of what the upper one adds, the integrands at the clamp, 1/C up is left.
-    """
+    """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation."""
     by_excess = span_by_excess(loaded, tip_rotation, alpha)
     up, across = frame(loaded, alpha) if end is None else end
     up_w, across_w = frame(by_excess, alpha)
@@ -165,7 +154,6 @@ def _contact(
 
 
 def equilibria(contour: Contour, t: Floats) -> Equilibria:
-    """The vibrissa against each contour point, as `equilibria_at` has it."""
     return equilibria_at(contour.at(t))
 
 
@@ -187,9 +175,6 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
 
 
 def _fits(tangential: Equilibria) -> Booleans:
-    """Whether tangential contacts are within the vibrissa's length.
-
-    Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
-    """
+    """Whether tangential contacts fit on the vibrissa; below -52.906 deg there is none."""
     root_f = tangential.root_f
     return np.asarray((root_f > 0) & (tangential.span.q < root_f))

@@ -1,7 +1,4 @@
-"""What happens in a sweep, and where: first contact, phase limits, snap-off.
-
-Will, Steigenberger and Behn, section 4.
-"""
+"""What happens in a sweep, and where: first contact, phase limits, snap-off (Will et al., 4)."""
 
 import math
 from collections.abc import Sequence
@@ -273,13 +270,11 @@ def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]
 
 
 def _plain_columns(contacts: Equilibria, beams: Sequence[Beam], whose: Integers) -> ReadingColumns:
-    """The contacts as columns, each in the units of its beam."""
     radius = np.array([beam.radius / beam.length for beam in beams])[whose]
     return to_columns(contacts.states(Vibrissa(radius=radius)), Units.of_each(beams, whose))
 
 
 def _rows(columns: ReadingColumns) -> list[Event]:
-    """The rows of the readings' table."""
     words = {name: np.array(of)[columns[name]] for name, of in WORDS.items()}
     every = {**columns, **words}
     rows = zip(*(values.tolist() for values in every.values()), strict=True)
@@ -305,7 +300,6 @@ def _first_touch(contour: Contour, t: float, beam: Beam) -> Event:
 
 
 def _nowhere() -> Event:
-    """What there is not."""
     numbers = {name: np.nan for name in COLUMNS if name not in ("phase", "status")}
     return Event(**numbers, phase="free", status="unreachable")
 

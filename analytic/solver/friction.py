@@ -1,9 +1,4 @@
-"""What dry friction would do to the readings, which the theory of Will et al. leaves out.
-
-Sliding on, the object holds the vibrissa back along its tangent with mu times the normal force. The
-states are those of a case with friction (`analytic.solver.general`), but of either sign of it, and
-at all frictionless stations, whether or not a sweep comes to them: what a budget asks.
-"""
+"""What dry friction of either sign would do to the readings, at all frictionless stations."""
 
 from dataclasses import replace
 

@@ -189,11 +189,7 @@ def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
 
 
 def _to_end_of_reach(contours: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
-    """Up to the first point out of reach of each contour, with more points before that.
-
-    Nothing is within reach again behind it. Past a nearly sharp edge x0 may dip a last time before
-    it, within a small part of a cell.
-    """
+    """Up to the first point out of reach of each contour, with more points before that."""
     point = contours.at(*grid)
     gone = ~within_reach(point.alpha, point.eta)
     gone[grid.begins] = False
@@ -226,11 +222,7 @@ def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
 
 
 def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
-    """Where the foot position is least between neighbours, if it may be less than all before.
-
-    The second grid, with the states there, has the points on either side of them, too: if x0 is
-    lower there, the derivative was inexact.
-    """
+    """Where the foot position is least between neighbours, if it may be less than all before."""
     foot_x, rate = samples.foot_x, samples.rate
     before = np.where(np.isnan(rate[:-1]), 1.0, rate[:-1])
     after = np.where(np.isnan(rate[1:]), -1.0, rate[1:])

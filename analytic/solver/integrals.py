@@ -14,13 +14,7 @@ _SMALL = 0.8  # modulus, up to which two of Landen's steps leave less than round
 def elliptic_integrals(
     opposite: Floats, adjacent: Floats, k: Floats, k_: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """F(psi, k), E(psi, k) and sin psi of amplitudes from -pi to pi.
-
-    Two of Landen's descending transformations (*NIST Digital Library of Mathematical Functions*,
-    19.8.12 and 19.8.13) make the modulus so small that three terms of the series in its square are
-    exact. They take the amplitude as a point of the unit circle, where tan(psi_1 - psi) =
-    k' tan psi is a product of two complex numbers.
-    """
+    """F(psi, k), E(psi, k) and sin psi of amplitudes from -pi to pi (DLMF 19.8.12, 19.8.13)."""
     psi = np.arctan2(opposite, adjacent + 0.0)  # an adjacent -0 would make 0 and 0 half a turn
     if psi.size <= _FEW:
         return ellipkinc(psi, k * k), ellipeinc(psi, k * k), np.sin(psi)

@@ -1,12 +1,4 @@
-"""Sweeps of the paper's vibrissa, many at once: the accelerator of `analytic.solver.general`.
-
-A straight, uniform vibrissa in a rigid clamp that does not rub is one of the general ones, and
-`general.sweep.solve` has the same answers. It is solved faster here, as its span depends on two
-numbers alone (`analytic.solver.elastica`): states are known at each point of the contour, so that
-they are followed along that (`grid`, `branch`) and between (`starts`, `stations`), for all sweeps
-in the same arrays. States, columns, residuals, events and readings are those of the general
-vibrissa.
-"""
+"""Sweeps of the paper's vibrissa, many at once: the accelerator of `analytic.solver.general`."""
 
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
@@ -29,12 +21,7 @@ _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on 
 
 
 def solve_plain(given: Sequence[Case]) -> list[Readings]:
-    """Solve sweeps, those to the right as their mirror images.
-
-    In a sweep to the left the vibrissa is free right of the first contact and left of the
-    snap-off. Between them the foot position falls along the equilibria, so that each station has
-    one state.
-    """
+    """Solve sweeps, those to the right as their mirror images."""
     cases = [case if case.sweep.direction == "left" else case.mirrored() for case in given]
     counts = [case.sweep.stations for case in cases]
     whose = np.repeat(np.arange(len(cases)), counts)

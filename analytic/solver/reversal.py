@@ -39,7 +39,6 @@ class SlidingBranch:
         return cls(vibrissa, path)
 
     def at(self, case: Case, foot_x: Floats) -> Floats:
-        """States at foot positions."""
         z, known = solve_places(self.path, case.poses, foot_x)
         if not known.all():
             place = foot_x[int(np.argmin(known))] * case.beam.length

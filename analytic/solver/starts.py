@@ -1,9 +1,4 @@
-"""Where Newton's method starts at given foot positions: on cubics between the points of a grid.
-
-They go by tau, the root of the contour parameter's distance from first contact: there the foot
-position moves like that root, and by tau it is smooth. Within a cell the cubic that has its values
-and derivatives at both ends is good to 1e-8, also where x0 folds.
-"""
+"""Where Newton's method starts: on cubics by the root of the way from first contact."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -77,10 +72,7 @@ def located(
 
 
 def _cubic(ends: tuple[Floats, Floats], slopes: tuple[Floats, ...]) -> tuple[Floats, ...]:
-    """Coefficients of the cubics between 0 and 1 with given values and derivatives there.
-
-    It is the chord where a derivative is not known.
-    """
+    """Coefficients of cubics by values and rates at 0 and 1; a chord where no rate is known."""
     before, after = ends
     rise = after - before
     with np.errstate(invalid="ignore"):
@@ -95,11 +87,7 @@ def _value(cubic: tuple[Floats, ...], share: Floats) -> Floats:
 
 
 def _share(cubic: tuple[Floats, ...], value: Floats) -> Floats:
-    """Where between 0 and 1 cubics have a value that lies between those at their ends.
-
-    The start is the parabola with the cubic's ends and its derivative at the second one, which may
-    be a fold.
-    """
+    """Where between 0 and 1 cubics have a value that lies between those at their ends."""
     constant, first, second, third = cubic
     with np.errstate(all="ignore"):
         rise = first + second + third

@@ -34,12 +34,7 @@ class _Iterate(NamedTuple):
 def solve_stations(
     contours: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
 ) -> Equilibria:
-    """The states at foot positions on branches.
-
-    Newton's method starts from cubics on the branch's grid and may not leave the station's cell.
-    What it leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
-    equilibrium at a contour point changes steadily along the cell, whatever its phase.
-    """
+    """The states at foot positions on branches, by Newton's method, else enclosed."""
     stations, (tangent, t, tip_rotation, behind) = located(contours, branches, foot_x)
     found = _newton(contours, stations, tangent, (t, tip_rotation))
     poor = (~(_admissible(found.states) & (found.missed <= _EXACT))).nonzero()[0]
@@ -58,12 +53,7 @@ def solve_stations(
 def _newton(
     contours: Contours, stations: Stations, tangent: Booleans, start: tuple[Floats, Floats]
 ) -> _Iterate:
-    """The iterate that misses least, of each station.
-
-    Phase A is solved for the excess rotation together with the contour parameter: from the height
-    alone the rotation would lose its digits at first contact, where the height hardly depends on
-    the force.
-    """
+    """The iterate that misses least, of each station."""
     t, tip_rotation = start
     best: _Iterate | None = None
     step = np.full_like(t, np.inf)
@@ -145,10 +135,7 @@ def _admissible(states: Equilibria) -> Booleans:
 
 
 def _enclose(contours: Contours, stations: Stations, behind: Floats) -> _Iterate:
-    """Stations enclosed along the contour, in whichever phase they are.
-
-    `behind` is the excess rotation where each one's cell ends.
-    """
+    """Stations enclosed along the contour, in whichever phase; cells end at `behind`."""
     owner, foot_x, low, high = stations
 
     def ahead(station: Integers, t: Floats) -> Floats:

@@ -50,7 +50,6 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
 
 
 def _solve_general(case: Case) -> Readings:
-    """With friction, an elastic clamp, a natural curvature, or what varies along the vibrissa."""
     leftward = case if case.direction == "left" else case.mirrored()
     columns, events = general.solve(leftward)[:2]
     columns |= leftward.way_columns

@@ -24,11 +24,7 @@ _ROUNDING = float(np.finfo(float).eps)  # of the height [L]
 
 
 def greatest_height(alpha: Floats) -> Floats:
-    """Height of the tip whose excess rotation is zero: contour points above are out of reach.
-
-    For alpha >= 0 the vibrissa is straight then; for alpha < 0 its clamp carries no moment, and the
-    integrals are complete ones.
-    """
+    """Height of the tip whose excess rotation is zero: contour points above are out of reach."""
     m = _m(alpha)
     return np.where(alpha < 0, np.cos(alpha) * (2 * ellipe(m) / ellipk(m) - 1), 1.0)
 
@@ -40,21 +36,13 @@ def tangent_height(alpha: Floats) -> Floats:
 
 
 def within_reach(alpha: Floats, eta: Floats) -> Booleans:
-    """Whether a vibrissa can rest against contour points.
-
-    What it touches with its side is lower than what its tip can rest on there.
-    """
+    """Whether a vibrissa can rest against contour points."""
     return np.asarray((eta < greatest_height(alpha)) & (np.abs(alpha) < np.pi / 2))
 
 
 def tip_state(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> tuple[Floats, Span]:
-    """The vibrissa whose tip touches at slope `alpha` and height `eta`.
-
-    The height falls steadily as the tip turns, from `greatest_height` to tangential contact, and
-    sqrt(1 - height) is nearly proportional to the rotation w (0.516 u at alpha > 0, 0.5 u at
-    alpha = 0): Halley's method on it needs two steps, and a bracket keeps it safe. Its unknown is
-    p = sqrt(sin(w/2)), in which the height is smooth even where the clamp moment vanishes.
-    """
+    """The vibrissa whose tip touches at slope `alpha` and height `eta`, by Halley's method."""
+    # In p = sqrt(sin(w/2)) the height is smooth even where the clamp moment vanishes.
     top = greatest_height(alpha)
     # Against an upright side the vibrissa is straight and carries no load.
     active = ((eta < top) & (np.abs(alpha) < np.pi / 2)).nonzero()[0]
@@ -114,12 +102,7 @@ def _enclosed(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
 
 
 def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats, high: Floats) -> Floats:
-    """Where to begin, within 10 % of p, given the largest p.
-
-    The sag is taken for a quadratic function of p: from `first`, where the clamp moment vanishes,
-    with its slope there, first/(q sqrt(-sin(alpha))) for alpha < 0 and 0 else, to `last`, in
-    tangential contact.
-    """
+    """Where to begin, within 10 % of p, given the largest p: the sag is nearly quadratic."""
     slope = np.zeros_like(alpha)
     bent = (alpha < 0).nonzero()[0]
     slope[bent] = first[bent] / (2 * ellipk(_m(alpha[bent])) * np.sqrt(-np.sin(alpha[bent])))
@@ -144,10 +127,7 @@ class _Tried(NamedTuple):
     up: tuple[Floats, Floats, Floats]  # height times sqrt(f), and its derivatives
 
     def turned_to(self, p: Floats) -> Floats:
-        """Excess and integrals, shape (4, n), a step of third order away.
-
-        What these terms leave is rounding then.
-        """
+        """Excess and integrals, shape (4, n), a step of third order away."""
         excess = 2 * np.arcsin(p * p)
         turned = excess - self.excess
         found = [excess]

@@ -32,12 +32,7 @@ def check_convex(
     label: str,
     known: bool = False,
 ) -> None:
-    """Compare chords with the slope angles at their ends, over long and over short distances.
-
-    The chord between two points of a strictly convex contour has a slope angle between those of the
-    tangents there. The long chords are next to each other and miss nothing that is large. The short
-    ones begin where a golden-section sequence puts them: evenly, and in step with no wave.
-    """
+    """Compare chords, long and short, with the slope angles at their ends."""
     lowest, highest = alpha_range
     inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
     low, high = lowest + inset, highest - inset
@@ -67,7 +62,6 @@ def check_convex(
 
 
 def _values(curve: Coordinate, alpha: Floats, name: str, label: str) -> Floats:
-    """What a function makes of all angles at once."""
     try:
         with np.errstate(all="ignore"):  # what is not finite is reported below
             values = np.asarray(curve(alpha), dtype=float)

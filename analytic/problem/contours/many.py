@@ -9,17 +9,11 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.contours.parallel import Parallel
 from analytic.problem.contours.profile import Profile, unchecked
 
 
 class Contours:
-    """Contours of any kinds, each with its number.
-
-    Those of one family, as catenaries of any width and height, differ in numbers alone: their
-    functions are called once, with arrays in place of the numbers. All others are called one by
-    one.
-    """
+    """Contours, each with its number; of one family, as catenaries, in one call with arrays."""
 
     def __init__(self, contours: Sequence[Contour]) -> None:
         self.contours = tuple(contours)
@@ -28,8 +22,7 @@ class Contours:
         families: dict[Any, list[int]] = {}
         numbers: list[tuple[float, ...]] = []
         for i, contour in enumerate(self.contours):
-            one_of_many = isinstance(contour, Profile | Parallel)
-            family, own = _taken_apart(contour) if one_of_many else (i, ())
+            family, own = _taken_apart(contour) if isinstance(contour, Profile) else (i, ())
             families.setdefault(family, []).append(i)
             numbers.append(own)
         self._members = [np.array(members) for members in families.values()]
@@ -48,7 +41,6 @@ class Contours:
         return np.concatenate([contour.parameter(level) for contour in self.contours])
 
     def at(self, owner: Integers, t: Floats) -> ContourPoint:
-        """Points of the contours."""
         if len(self.contours) == 1:
             return self.contours[0].at(t)
         if len(self._members) == 1:
@@ -82,8 +74,6 @@ def _parts(value: Any) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:  # 
             return _tuple, value
         case Profile() if value.radius_of_curvature is not None:
             return _profile, tuple(getattr(value, name) for name in _CURVES)
-        case Parallel():
-            return _parallel, (value.of, value.radius)
         case partial() if not value.keywords and getattr(value.func, "__module__", "") in _FAMILIES:
             return partial, (value.func, *value.args)  # of our own functions, which take arrays
         case MethodType():
@@ -118,6 +108,5 @@ def _tuple(*parts: object) -> tuple[object, ...]:
 
 
 _FAMILIES = tuple(f"{__package__}.{name}" for name in ("families", "profile"))
-_CURVES = ("xi", "eta", "alpha_range", "radius_of_curvature")
-_profile = partial(unchecked, Profile, _CURVES)
-_parallel = partial(unchecked, Parallel, ("of", "radius"))
+_CURVES = ("xi", "eta", "alpha_range", "radius_of_curvature", "distance")
+_profile = partial(unchecked, _CURVES)

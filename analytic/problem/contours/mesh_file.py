@@ -44,12 +44,7 @@ class _Read(NamedTuple):
 
 
 def read_body(file: str | Path, hull: bool, tolerance: float) -> MeshBody:
-    """The convex body in a mesh file.
-
-    Vertices at one place are merged whatever their texture or normals, inside-out meshes are turned
-    and vertices inside the hull are dropped. A body of more than 50,000 vertices is thinned to that
-    number at most.
-    """
+    """The convex body in a mesh file: merged, turned outside in if need be, thinned if too fine."""
     from scipy.spatial import QhullError  # slow to load, as trimesh is
 
     file = as_path(file, "mesh file")
@@ -88,7 +83,6 @@ def _check_closed(read: _Read, file: Path) -> None:
 
 
 def _check_convex(read: _Read, hull: float, file: Path) -> None:
-    """Refuse a closed mesh that fills less than the volume of its hull."""
     import trimesh
 
     mesh = trimesh.Trimesh(read.vertices, read.faces, process=False)

@@ -98,10 +98,7 @@ def _cut(points: Floats, faces: Integers) -> Floats:
 
 
 def _corners(points: Floats) -> Floats:
-    """Those of the convex hull of points of the plane, in order; fewer than 3 if they have none.
-
-    What rounding leaves of points that lie on an edge is dropped.
-    """
+    """Those of the convex hull of points of the plane, in order; fewer than 3 if it is none."""
     from scipy.spatial import ConvexHull, QhullError  # slow to load
 
     extent = float(np.ptp(points, axis=0).max()) if len(points) > 2 else 0.0
@@ -130,13 +127,7 @@ def _handedness(across: list[int]) -> int:
 
 
 def _tilt(body: MeshBody, points: Floats, across: list[int]) -> float:
-    """Largest component of the normals across the plane, along the lower side of the section.
-
-    An edge in the plane has all normals between those of its two faces; the least tilted counts.
-    So has the edge where the lower side ends, which an upright vibrissa can touch.
-
-    `points` are the body's vertices, `across` its axes in the frame of the section.
-    """
+    """Largest component of the normals across the plane, along the section's lower side."""
     up, third = body.normals[:, across[1:]].T
     above = np.where(np.abs(points[:, 2]) < _IN_PLANE * np.ptp(points), 0, points[:, 2])
     sides = above[body.faces]

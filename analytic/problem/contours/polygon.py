@@ -17,12 +17,7 @@ _STRAIGHT = 1e-12  # rad; vertices that turn less are dropped: they are on an ed
 
 @dataclass(frozen=True, eq=False)
 class Polygon(Contour):
-    """The lower chain of a convex polygon, or its parallel curve; made by `polygon`.
-
-    Along an edge the slope angle stays and the point moves; round a vertex the point stays, or
-    moves on an arc about it on the parallel curve, and the angle moves. The parameter t counts arc
-    length along the edges and angle round the vertices, from the left end.
-    """
+    """The lower chain of a convex polygon, or its parallel curve."""
 
     # Shape (n, 2); From the leftmost to the rightmost vertex along the lower side [length].
     vertices: Floats
@@ -36,7 +31,6 @@ class Polygon(Contour):
         return 0.0, float(self._starts[-1])
 
     def at(self, t: Floats) -> ContourPoint:
-        """Points at parameters `t`, shape (n,)."""
         t = np.asarray(t, dtype=float)
         piece = np.clip(
             np.searchsorted(self._starts, t, side="right") - 1, 0, len(self._starts) - 2
@@ -58,7 +52,6 @@ class Polygon(Contour):
         return np.asarray(self._starts[2 * vertex] + alpha - self._angles[vertex])
 
     def breaks(self) -> Floats:
-        """The ends of all edges."""
         return self._starts[1:-1]
 
     def outline(self, begin: float, end: float, points: int) -> Floats:
@@ -78,7 +71,6 @@ class Polygon(Contour):
         return replace(self, distance=self.distance + radius, solid=None)
 
     def scaled(self, factor: float) -> "Polygon":
-        """The polygon enlarged by `factor` about the origin."""
         positive("profile.scale", factor)
         return replace(
             self,

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.convexity import OF_ANGLES, Coordinate, check_convex
-from analytic.problem.contours.parallel import Parallel
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
 
@@ -20,7 +19,6 @@ _STEPS = 5e-3 / 4.0 ** np.arange(4)  # rad
 _STENCIL = np.arange(-3.0, 4.0)  # in steps
 _TO_POWERS = np.linalg.inv(np.vander(_STENCIL, increasing=True))
 
-_Kind = TypeVar("_Kind", bound=Contour)
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,8 @@ class Profile(Contour):
     radius_of_curvature: Coordinate | None = field(default=None, repr=False)
     label: str = "custom profile"
     kinks: tuple[float, ...] = field(default=(), repr=False)
+    # That of the parallel curve from what the functions say, which goes round corners, too [length]
+    distance: float = field(default=0.0, init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("xi", "eta", "radius_of_curvature"):
@@ -75,23 +75,24 @@ class Profile(Contour):
 
     @property
     def t_range(self) -> tuple[float, float]:
-        """The full turn of the lower side of a convex body; the parameter is the slope angle."""
         return (-np.pi / 2, np.pi / 2)
 
     def at(self, t: Floats) -> ContourPoint:
-        """Points at slope angles `t`, shape (n,)."""
         t = np.asarray(t, dtype=float)
         on = self._on(t)
-        stretch = np.where(t == on, self._stretch(on), 0.0)
-        return ContourPoint(t, self.xi(on), self.eta(on), np.ones(t.shape), stretch)
+        stretch = np.where(t == on, self._stretch(on), 0.0) + self.distance
+        return ContourPoint(t, *self._place(on, t), np.ones(t.shape), stretch)
 
     def place(self, t: Floats) -> tuple[Floats, Floats]:
-        """Coordinates of the points at slope angles `t`, shape (n,)."""
-        on = self._on(t)
-        return self.xi(on), self.eta(on)
+        return self._place(self._on(t), t)
+
+    def _place(self, on: Floats, t: Floats) -> tuple[Floats, Floats]:
+        xi, eta = self.xi(on), self.eta(on)
+        if isinstance(self.distance, float) and self.distance == 0:
+            return xi, eta
+        return xi + self.distance * np.sin(t), eta - self.distance * np.cos(t)
 
     def parameter(self, alpha: Floats) -> Floats:
-        """The slope angle itself."""
         return alpha
 
     def breaks(self) -> Floats:
@@ -101,26 +102,28 @@ class Profile(Contour):
 
     def outline(self, begin: float, end: float, points: int) -> Floats:
         """Vertices at equal steps of slope angle: equal steps of the facets' normals."""
-        low, high = self.alpha_range
-        on = np.linspace(max(begin, low), min(end, high), points)
-        return np.column_stack([self.xi(on), self.eta(on)])
+        if self.distance == 0:
+            low, high = self.alpha_range
+            begin, end = max(begin, low), min(end, high)
+        return np.column_stack(self.place(np.linspace(begin, end, points)))
 
-    def offset(self, radius: float) -> Contour:
-        """The parallel curve at distance `radius` below, round the corners at the ends too."""
-        return self if radius == 0 else Parallel(self, radius)
+    def offset(self, radius: float) -> "Profile":
+        if radius == 0:
+            return self
+        positive("radius of the parallel curve", radius)
+        return self._changed(distance=self.distance + radius)
 
     def scaled(self, factor: float) -> "Profile":
-        """The contour enlarged by `factor` about the origin, to change its unit of length."""
         if positive("profile.scale", factor) == 1:
             return self
         return self._changed(
             xi=partial(_scaled, self.xi, factor),
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
+            distance=factor * self.distance,
         )
 
     def raised(self, height: float) -> "Profile":
-        """The contour moved up by `height`."""
         return self._changed(
             eta=partial(_raised, self.eta, height),
             radius_of_curvature=self._stretch,
@@ -146,7 +149,6 @@ class Profile(Contour):
         return changed
 
     def _on(self, alpha: Floats) -> Floats:
-        """The nearest slope angles within the range."""
         low, high = self.alpha_range
         return np.minimum(np.maximum(alpha, low), high)
 
@@ -158,10 +160,7 @@ class Profile(Contour):
         )
 
     def _slope(self, curve: Coordinate, alpha: Floats) -> Floats:
-        """Derivative of `curve`, from polynomials through seven points within the range.
-
-        Of several spacings it is the one that agrees best with the next finer one.
-        """
+        """Derivative of `curve`, from polynomials through seven points within the range."""
         lowest, highest = self.alpha_range
         h = np.minimum(_STEPS, (highest - lowest) / 12 * (_STEPS / _STEPS[0]))[:, None]
         centre = np.minimum(np.maximum(alpha, lowest + 3 * h), highest - 3 * h)
@@ -189,19 +188,15 @@ class Curve(Protocol):
 
 
 def of_curve(curve: Curve, steepest: float, label: str, kinks: tuple[float, ...] = ()) -> Profile:
-    """A contour up to a slope angle on either side.
-
-    It is not searched for waves. What rounding hides is refused all the same, in a fifth of the
-    time.
-    """
+    """A contour up to a slope angle on either side, not searched for waves."""
     parts = curve.xi, curve.eta, (-steepest, steepest), curve.radius, label
     check_convex(*parts, known=True)
-    return unchecked(Profile, tuple(part.name for part in fields(Profile)), *parts, kinks)
+    return unchecked(tuple(part.name for part in fields(Profile)), *parts, kinks, 0.0)
 
 
-def unchecked(kind: type[_Kind], names: Sequence[str], *parts: object) -> _Kind:
+def unchecked(names: Sequence[str], *parts: object) -> Profile:
     """A contour of parts that are known to be right, or of arrays that stand for numbers."""
-    found = object.__new__(kind)
+    found = object.__new__(Profile)
     for name, part in zip(names, parts, strict=True):
         object.__setattr__(found, name, part)
     return found

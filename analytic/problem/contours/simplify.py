@@ -12,12 +12,7 @@ _ROUNDING = 1e-12  # of the body's size; as far outside is on the surface
 
 
 def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]:
-    """Points of a convex surface such that their hull is nearly that of all.
-
-    It begins with the point farthest out in each of some hundred ranges of directions. Then, round
-    by round, each face of the hull gets the point that is farthest outside of it. Few faces need no
-    more than a sample of the points; the last round, and what is said of it, has all of them.
-    """
+    """Points of a convex surface such that their hull is nearly that of all."""
     if tolerance == 0 and len(points) <= most:
         return points, 0.0
     allowed = max(tolerance, _ROUNDING * float(np.ptp(points, axis=0).max()))

@@ -18,18 +18,11 @@ class ConvexMesh:
     name: str  # of the file
 
     def gap(self, radius: float) -> float:
-        """How much earlier a bead touches the body than it would touch the section's prism.
-
-        A face whose normal leaves the plane by the angle t keeps the bead's centre at the distance
-        r / cos(t) from the section, and presses it out of the plane with tan(t) times the force in
-        it.
-        """
+        """How much earlier a bead touches the body than it would touch the section's prism."""
         return radius * (1 / math.sqrt(max(1 - self.tilt**2, 1e-300)) - 1)
 
     def scaled(self, factor: float) -> "ConvexMesh":
-        """Enlarged about the origin."""
         return replace(self, vertices=factor * self.vertices)
 
     def mirrored(self) -> "ConvexMesh":
-        """The mirror image, x to -x."""
         return replace(self, vertices=self.vertices * [-1, 1, 1])

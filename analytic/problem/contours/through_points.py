@@ -94,11 +94,7 @@ def through_points(points: ArrayLike, label: str = "curve through points") -> Pr
 
 
 def _tangents(length: Floats, chord: Floats) -> Floats:
-    """Slope angles at the points, of the circles through each and its neighbours.
-
-    Seen from the middle one of three points the tangent makes with a chord the angle that the other
-    chord subtends at the far point.
-    """
+    """Slope angles at the points, of the circles through each and its neighbours."""
     turn = np.diff(chord)
     third = np.sqrt(
         length[1:] ** 2 + length[:-1] ** 2 + 2 * length[1:] * length[:-1] * np.cos(turn)
@@ -129,5 +125,4 @@ def _biarcs(at: Floats, chord: Floats, tangent: Floats) -> _Arcs:
 
 
 def _turn(radius: Floats, begin: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """The way along an arc."""
     return radius * (np.sin(end) - np.sin(begin)), radius * (np.cos(begin) - np.cos(end))

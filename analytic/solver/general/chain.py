@@ -1,9 +1,4 @@
-"""The equilibria of a sweep in which a second place touches: paths of one contact and of two.
-
-A path of one contact goes on to where another place of the vibrissa comes to the object, or to
-another object. There a second force begins to grow, and a path of two contacts goes on to where one
-of the two forces ends; then the other contact is alone again.
-"""
+"""A sweep in which a second place touches: paths of one contact and of two, end to end."""
 
 from collections.abc import Sequence
 
@@ -25,10 +20,7 @@ _MOST = 24  # paths; round a polygon of many corners there may be more
 
 
 def with_second_contacts(objects: Sequence[Contour], path: Path, poses: Poses) -> list[Path]:
-    """A path of one contact up to its second one, and what follows.
-
-    The last one is not ``complete`` if what follows it is not known.
-    """
+    """A path of one contact up to its second one, and what follows as far as it is known."""
     found: list[Path] = []
     while True:
         pair = _touched(objects, path, poses)
@@ -140,7 +132,6 @@ def _curve(contour: Contour | Pair, vibrissa: Vibrissa, poses: Poses) -> Equilib
 
 
 def _up_to(path: Path, poses: Poses, z: Floats) -> Path:
-    """A path of one contact up to a state on it."""
     here = _curve(path.contour, path.vibrissa, poses).onward(z)
     if here is None:
         raise ArithmeticError(f"one contact is lost at p = {z[-1]:.6g} L")

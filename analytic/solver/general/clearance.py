@@ -81,11 +81,7 @@ def _towards(contact: States) -> Floats:
 
 
 def _passes_corners(contour: Contour, contact: States) -> Booleans:
-    """Whether a vibrissa curved towards the object stays off the corners next to its contact.
-
-    These may be closer to each other than the places that are looked at. There the vibrissa is a
-    cubic: curved as at rest, less what the force bends on the way to the clamp.
-    """
+    """Whether a vibrissa, there a cubic, stays off corners closer than the places looked at."""
     clear = np.ones(len(contact.force), dtype=bool)
     s = contact.arc_length
     natural = _towards(contact)
@@ -203,10 +199,7 @@ def _outside(contour: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
 
 
 def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats, Floats]:
-    """How far places are outside, and the contour parameter of what they are next to.
-
-    Of those that are farther than `taper`, by a tangent that says so.
-    """
+    """How far places are outside, and the contour parameter of what they are next to."""
     low, high = contour.t_range
     t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
     alpha, xi, eta = contour.at(t)[:3]

@@ -20,12 +20,7 @@ _BALANCED = 1e-12  # L, rad
 
 
 def contacts(contour: Contour, t: Floats, vibrissa: Vibrissa) -> States:
-    """The vibrissa against each contour point, tangential or at the tip.
-
-    They are those of the sweep along the contour, with what follows after the snap-off; of two at
-    the same point the later one. Points that it does not come to are tried from the paper's
-    vibrissa there, as it is given its curvature, its elastic clamp and its friction.
-    """
+    """The vibrissa against each contour point, tangential or at the tip."""
     reach = contact_range(contour)
     touch = first_touch(contour, reach, vibrissa.at_rest.shape)
     path = follow(contour, vibrissa, touch, reach, along_x(vibrissa.clamp_angle))
@@ -46,10 +41,7 @@ def _solved(contour: Contour, vibrissa: Vibrissa, path: Path, t: Floats) -> Floa
 
 
 def _on_path(path: Path, t: Floats) -> Floats:
-    """Force and excess of the last place on a path with each contour parameter, shape (n, 2).
-
-    NaN where there is none.
-    """
+    """Force and excess of a path's last place of each contour parameter, shape (n, 2), or NaN."""
     cells = np.full(len(t), -1)
     for i, (begin, end) in enumerate(pairwise(path.z[:, 0])):
         if begin != end:
@@ -63,11 +55,7 @@ def _on_path(path: Path, t: Floats) -> Floats:
 def _from_plain(
     contour: Contour, t: Floats, point: ContourPoint, vibrissa: Vibrissa
 ) -> tuple[Floats, Floats]:
-    """Force and excess, shape (n, 2), and what they miss, followed from the paper's vibrissa.
-
-    What is lost on the way is given up: a search for what is not there takes hundreds of times as
-    long as one that ends.
-    """
+    """Force and excess, shape (n, 2), and what they miss, followed from the paper's vibrissa."""
     plain = equilibria(contour, t).states(Vibrissa())
     z = np.stack([plain.force, plain.excess], axis=1)
     missed = np.where(np.isfinite(z).all(axis=1), 0.0, np.inf)

@@ -30,8 +30,6 @@ _F, _W, _P = 1, 2, -1
 
 
 class Point(NamedTuple):
-    """A point of the curve."""
-
     z: Floats
     direction: Floats  # derivative of `z` by the curve's length
     amplitude: float = 0.0  # amplitude of the span [rad]; see `States`
@@ -162,10 +160,7 @@ class EquilibriumCurve(NamedTuple):
         return found
 
     def turning(self, here: Point, new: Point) -> float:
-        """By how much the curve turns between two points.
-
-        Without a straight way of the clamp: how fast that goes jumps with the contour's curvature.
-        """
+        """By how much the curve turns between two points, but for a straight way of the clamp."""
         seen = slice(_P if isinstance(self.poses, Straight) else None)
         scale = self.vibrissa.sizes(here.z)
         a, b = ((point.direction / scale)[seen] for point in (here, new))
@@ -256,7 +251,6 @@ def _along(point: Point, way: Floats) -> Point:
 
 
 def turned_round(point: Point) -> Point:
-    """The point, with the opposite direction."""
     return point._replace(direction=-point.direction, sense=-point.sense)
 
 

@@ -67,10 +67,7 @@ def march(
     finer: int = 1,
     trail: list[Trail] | None = None,
 ) -> SpanEnd:
-    """March along spans from the contact to the clamp, or back.
-
-    Of one that has a weight the slope angle of the force counts, too.
-    """
+    """March along spans from the contact to the clamp, or back."""
     nowhere = ~((force >= 0) & (length >= 0) & np.isfinite(direction))
     here = SpanEnd(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
     force, direction = np.where(nowhere, 0.0, force), np.where(nowhere, 0.0, direction)
@@ -162,7 +159,6 @@ def _panels(rod: RodProperties, force: Floats, length: Floats, finer: int) -> Fl
 
 
 def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -> SpanEnd:
-    """March from one end of a panel to the other."""
     force = pull.force
     # By the natural curvature and the moment at the beginning; the force turns it further.
     reached = turned = here.theta + (panel.rest + panel.bend * here.m)
@@ -207,8 +203,5 @@ def _phases(panel: Panel, theta: Floats, m: Floats, force: Floats) -> Floats:
 
 
 def _iterations(pull: float) -> int:
-    """How many iterations make the slope exact where the pendulum's square phase is at most that.
-
-    The k-th one leaves pull^(k + 1)/(2 k + 2)!, as each integrates twice what the one before left.
-    """
+    """How many leave nothing, by a square phase: the k-th leaves pull^(k + 1)/(2 k + 2)!."""
     return int(np.searchsorted(_PULLS, pull))

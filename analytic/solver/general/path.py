@@ -1,9 +1,4 @@
-"""The equilibria of the general vibrissa from first contact to where it lets go, as cells.
-
-Neither the contour parameter nor the foot position grows steadily along their curve: a vibrissa
-that is curved towards the object is straightened first, and its tip climbs. So it is followed by
-its own length.
-"""
+"""The equilibria of the general vibrissa by their curve's own length, up to where it lets go."""
 
 from collections.abc import Mapping
 from itertools import pairwise
@@ -136,10 +131,7 @@ class Path(NamedTuple):
 
 
 def cells(points: Floats, foot_x: Floats) -> Integers:
-    """The cell between points in sweep order that holds the state at each foot position.
-
-    It is the first whose end lies left of that.
-    """
+    """The cell between points in sweep order whose end is the first left of each foot position."""
     least = np.minimum.accumulate(points)
     end = np.searchsorted(-least, -foot_x, side="left")
     return np.clip(end, 1, len(points) - 1) - 1
@@ -174,7 +166,6 @@ def follow(
 
 
 def follow_from(curve: EquilibriumCurve, start: Point) -> Path:
-    """Follow a curve from one of its points on."""
     reach = curve.t_range
     for turn, step in _STEPS:
         points = _points(curve, start, turn, step)
@@ -195,11 +186,7 @@ def _goes_over(path: Path, reach: tuple[float, float]) -> bool:
 
 
 def refined(path: Path, poses: Poses) -> tuple[Path, Floats]:
-    """The path with shorter cells, and the derivatives of what its points miss.
-
-    So short that a state between two points is one step of Newton's method from their cubic. The
-    derivatives have shape (n, k, k + 1).
-    """
+    """The path with shorter cells, and the derivatives of what its points miss, (n, k, k + 1)."""
     cells = np.repeat(np.arange(len(path.p) - 1), _PARTS)
     share = np.tile(np.arange(_PARTS) / _PARTS, len(path.p) - 1)
     begin, end = path.direction[cells], path.direction[cells + 1]
@@ -210,11 +197,7 @@ def refined(path: Path, poses: Poses) -> tuple[Path, Floats]:
 
 
 def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
-    """Points of the curve by Newton's method.
-
-    One by one they are only good enough to go on from. A point of a sharp cone that misses its
-    conditions by 1e-8 may seem to lie beyond the fold.
-    """
+    """Points of the curve by Newton's method; one by one they are only good to go on from."""
     z, direction = (np.array(column) for column in zip(*(p[:2] for p in points), strict=True))
     z, direction, _ = _polished(curve.contour, curve.vibrissa, curve.poses, z, direction)
     exact = zip(points, z, direction, strict=True)
@@ -269,11 +252,7 @@ def _points(curve: EquilibriumCurve, start: Point, largest: float, length: float
 
 
 def _hides(curve: EquilibriumCurve, begin: Point, end: Point) -> bool:
-    """Whether something may happen between two points that neither shows.
-
-    The foot position may turn though its rates do not show it, unless the mean rate lies between
-    those at the ends, nearly; and the other phase may come and go.
-    """
+    """Whether something may happen between two points that neither shows."""
     way = (end.z - begin.z) / curve.vibrissa.sizes(begin.z)
     length, most = float(np.linalg.norm(way)), curve.vibrissa.most_turned
     mean = (end.p - begin.p) / length
@@ -296,11 +275,7 @@ def _skips_phase(begin: Point, end: Point, length: float, most: float) -> bool:
 
 
 def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) -> bool:
-    """Whether the vibrissa has let go, is out of reach, or cannot be after it lost its hold.
-
-    It buckles from half a period on, and a flexible one that lies on its other side would go on in
-    windings. It has lost its hold where the foot comes back, by more than `slack`.
-    """
+    """Whether the vibrissa has let go, is out of reach, or cannot be after it lost its hold."""
     if len(points) == 1:
         return False
     here = points[-1]

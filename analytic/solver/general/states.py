@@ -63,7 +63,6 @@ class Vibrissa(NamedTuple):
 
     @classmethod
     def of(cls, beam: Beam, held: Support) -> "Vibrissa":
-        """The numbers of a beam in its clamp, made dimensionless."""
         rest = held.unloaded(beam)
         return cls(
             0.0 if isinstance(rest.natural, Along) else rest.natural,
@@ -76,7 +75,6 @@ class Vibrissa(NamedTuple):
 
     @classmethod
     def of_case(cls, case: Case) -> "Vibrissa":
-        """That of a case."""
         return cls.of(case.beam, case.support)
 
     @property
@@ -126,7 +124,6 @@ class Vibrissa(NamedTuple):
         return self.natural_curvature * (1 - s) if self.natural_curvature else 0.0
 
     def radius_at(self, s: Floats) -> Floats | float:
-        """Radius."""
         return self.radius if self.rod is None else self.radius + self.rod.unloaded.taper(s)
 
     @property
@@ -169,7 +166,6 @@ class Vibrissa(NamedTuple):
         )
 
     def arc_length(self, excess: Floats) -> Floats:
-        """Arc length s1 of the contact."""
         return 1 + np.minimum(excess, 0.0) - np.maximum(excess - self.most_turned, 0.0)
 
     def turned(self, excess: Floats) -> Floats:
@@ -179,7 +175,6 @@ class Vibrissa(NamedTuple):
     def back_to_clamp(
         self, slope: Floats, couple: Floats, force: Floats, length: Floats, direction: Floats
     ) -> Start:
-        """March from the contact back to the clamp."""
         if self.rod is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
         return march.back_to_clamp(self.rod, slope, -couple, force, length, direction)
@@ -223,7 +218,6 @@ class States(NamedTuple):
 
     @property
     def arc_length(self) -> Floats:
-        """Arc length s1 of the contact."""
         return self.vibrissa.arc_length(self.excess)
 
     @property
@@ -256,7 +250,6 @@ class States(NamedTuple):
 
     @property
     def foot_x(self) -> Floats:
-        """Foot position."""
         return self.offset_point.xi - self.reach
 
     @property
@@ -306,10 +299,7 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
 
 
 def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> States:
-    """The states of given contour parameter, normal force and excess, shape (n, 3).
-
-    Those of two contacts have three numbers more: see `analytic.solver.general.pair`.
-    """
+    """The states of given contour parameter, force and excess, (n, 3), or of two contacts."""
     if not isinstance(contour, Contour):
         return contour.states(z, vibrissa)
     return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
@@ -318,12 +308,7 @@ def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> State
 def with_rates(
     point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa
 ) -> tuple[States, Floats]:
-    """`states`, and the derivatives of residuals and foot by t, force and excess, shape (n, 3, 3).
-
-    The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
-    and one-sided at a contour's breaks; the other two are differences that do not change the phase.
-    Of a heavy vibrissa the first one has a difference, too, of the contact that turns where it is.
-    """
+    """`states`, and the derivatives of residuals and foot by t, force and excess, (n, 3, 3)."""
     step_f = _DIFFERENCE * np.maximum(vibrissa.least_force, force)
     most = vibrissa.most_turned
     falls = (excess < 0) | ((excess > most / 2) & (excess <= most))
@@ -367,10 +352,7 @@ def rates_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> tuple[
 
 
 def misses(found: States, pose: Pose) -> Floats:
-    """What states miss in poses of the clamp: of its angle, its height and its place, (n, 3).
-
-    And what they miss at a second contact, if they have one.
-    """
+    """What states miss in poses: angle, height and place, (n, 3), and at a second contact."""
     missed = [
         found.angle - pose.angle,
         found.height_residual + pose.foot_y,
@@ -383,10 +365,7 @@ def misses(found: States, pose: Pose) -> Floats:
 def balance(
     contour: "Contour | Pair", vibrissa: Vibrissa, poses: Poses, z: Floats
 ) -> tuple[Floats, Floats, States]:
-    """What states on a way of the clamp miss, and its derivatives.
-
-    By the contour parameter, the normal force, the excess and the way's parameter, shape (n, 4).
-    """
+    """What states on a way of the clamp miss, and the derivatives by their numbers and its own."""
     here, rates = rates_at(contour, z[:, :-1], vibrissa)
     pose, rate = poses.at(z[:, -1]), poses.rate(z[:, -1])
     by_p = np.zeros((*rates.shape[:2], 1))

@@ -38,10 +38,7 @@ def solve_near(
     start: Floats,
     slopes: Floats | None = None,
 ) -> tuple[Floats, Booleans]:
-    """Contour parameter, force and excess in each pose, and whether in balance.
-
-    What the derivatives nearly are may be given.
-    """
+    """Contour parameter, force and excess in each pose, and whether in balance."""
 
     def missed_at(z: Floats, which: Integers) -> Floats:
         here = Pose(*(values[which] for values in pose))
@@ -55,11 +52,7 @@ def solve_near(
 
 
 def solve_places(path: Path, poses: Poses, p: Floats) -> tuple[Floats, Booleans]:
-    """Contour parameter, force and excess of the state at each parameter of the clamp's way.
-
-    Newton's method starts from the cubic through the path's points and directions. Of many, on a
-    path so fine that the derivatives at its points give those between, too.
-    """
+    """Contour parameter, force and excess of the state at each parameter of the clamp's way."""
     if len(p) <= _MANY:
         return _solve_few(path, poses, p)
     path, slopes = refined(path, poses)

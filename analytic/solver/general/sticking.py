@@ -1,10 +1,4 @@
-"""A vibrissa that sticks to the object: what is between sliding on and sliding back.
-
-With Coulomb friction every angle of the force from -arctan(mu) to arctan(mu) off the contour's
-normal is that of a state at rest. Between the two limits nothing slides: the surfaces of vibrissa
-and object may roll on each other, at the round tip and along the side, but what they roll by is the
-same on both.
-"""
+"""A vibrissa that sticks: all between sliding on and sliding back, from which it may only roll."""
 
 from typing import Literal, NamedTuple
 
@@ -137,12 +131,7 @@ def _in_phase(z: Floats) -> Floats:
 
 
 def _slid(contour: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
-    """By how much vibrissa and object would have slid on each other since `start` [L].
-
-    The object's surface passes by what the centreline's contour does less what that turns, the
-    vibrissa's by the length of its side from the contact to the tip, and by the turn of the round
-    tip.
-    """
+    """By how much vibrissa and object would have slid on each other since `start` [L]."""
     radius, rest = vibrissa.radius, vibrissa.unloaded
 
     def on_vibrissa(excess: Floats) -> Floats:

@@ -104,12 +104,7 @@ def _pieces(paths: Sequence[Path], holder: Integers) -> Iterator[tuple[Path, Int
 def _on_it_again(
     objects: Sequence[Contour], vibrissa: Vibrissa, last: Path, poses: Poses, p: Floats
 ) -> Booleans:
-    """Where a vibrissa that has let go touches once more, and nobody knows how.
-
-    At rest it would lie in an object there. Or it did before and has not come out of reach since:
-    what holds a curved one may hold it still where at rest it would not touch. A straight one that
-    let go early leaves as it would come.
-    """
+    """Where a vibrissa that has let go touches once more, and nobody knows how."""
     snap_off = last.p[last.snap_off]
     places = np.append(p, np.nextafter(snap_off, -np.inf))
     pose = poses.at(places)
@@ -135,7 +130,6 @@ def _holders(paths: Sequence[Path], p: Floats) -> Integers:
 
 
 def _events(paths: Sequence[Path], objects: Sequence[Contour]) -> dict[str, float | None]:
-    """Where on the way what happens happens."""
     path = joined(paths)
     points = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
     del points["contact_length_minimum"]
@@ -155,11 +149,7 @@ def _statuses(
     p: Floats,
     every: int,
 ) -> Integers:
-    """Which states on a path are ok, which stick and which touch again.
-
-    Of many with two contacts, which are dear to look at, one in so many is. Between two that are
-    alike all are, elsewhere the change is sought.
-    """
+    """Which states on a path are ok, which stick and which touch again; of many, one in so many."""
 
     def looked_at(which: Integers) -> Integers:
         state = take(found, which)
@@ -181,11 +171,7 @@ def _statuses(
 
 
 def _slides(path: Path, z: Floats, poses: Poses, p: Floats) -> Booleans:
-    """Whether the vibrissa slides on along the object as its clamp moves on.
-
-    A place on it moves along the contour by what the contact does, less what the contact moves
-    along the vibrissa.
-    """
+    """Whether the vibrissa slides on along the object as its clamp moves on."""
     vibrissa = path.vibrissa
     if vibrissa.friction == 0:
         return np.ones(len(z), dtype=bool)

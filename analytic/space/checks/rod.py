@@ -42,11 +42,7 @@ def integrate_rod(
 def integrate_rods(
     tangent: Floats, force: Floats, moment: Floats, length: Floats, points: int = 2
 ) -> tuple[Floats, Floats, Floats]:
-    """March many rods from the same clamp together, each to `points` places along its length.
-
-    Force and moment are the clamp's on the rod, of shape (n, 3) and dimensionless; what is found
-    has the shape (n, points, 3), places relative to the foot.
-    """
+    """March rods from the same clamp, by its force and moment, (n, 3), to places (n, points, 3)."""
     n = len(length)
 
     def rate(_: float, state: Floats) -> Floats:
@@ -150,10 +146,7 @@ def deflected_rods(readings: SpatialReadings) -> Floats:
 
 @dataclass(frozen=True)
 class Cantilever:
-    """A rod that stretches, shears, bends and twists (Simo, 1985; Antman, 2005), from x = 0 on.
-
-    Axes of the section: along the rod, y, z, as the world's at the clamp where it is not turned.
-    """
+    """A rod that stretches, shears, bends and twists (Simo, 1985; Antman, 2005), from x = 0 on."""
 
     length: float  # of the parameter along it
     stretching: Floats  # compliances 1/EA, 1/GA_y, 1/GA_z

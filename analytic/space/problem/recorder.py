@@ -25,7 +25,6 @@ class SpatialRecorder(AnyRecorder[SpatialReadings]):
     case: SpatialCase
 
     def readings(self) -> SpatialReadings:
-        """All rows, in the units of the case's beam."""
         events = stated(self.case, self.events())
         columns = self._columns(("phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL))
         tangent, provenance = self.case.path.clamp_tangent, self._provenance(events)

@@ -25,11 +25,7 @@ class Gap(NamedTuple):
 
 
 def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
-    """Distance between the body and the straight vibrissa of length 1.
-
-    The distance from a convex body is convex along a line: its slope, the cosine between normal and
-    vibrissa, changes its sign once.
-    """
+    """Distance between the body and the straight vibrissa of length 1: convex along it."""
     from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
 
     def rise(s: float) -> float:
@@ -60,7 +56,6 @@ class StraightVibrissa:
         self._slopes = np.diff(self._corners, axis=0) / np.diff(self.marks)[:, None]
 
     def foot(self, travel: float) -> Floats:
-        """A foot position."""
         travel = min(max(travel, 0.0), float(self.marks[-1]))
         leg = self._leg(travel)
         return np.asarray(self._corners[leg] + (travel - self.marks[leg]) * self._slopes[leg])
@@ -73,14 +68,10 @@ class StraightVibrissa:
         return min(int(self.marks.searchsorted(travel, "right")), len(self._slopes)) - 1
 
     def gap(self, travel: float) -> Gap:
-        """How near the straight vibrissa is there."""
         return straight_gap(self.body, self.foot(travel), self.path.clamp_tangent, self.radius)
 
     def lowest_contact(self, travel: float, arc_length: float) -> float:
-        """Where the side of the straight vibrissa begins to touch.
-
-        Along an upright face it touches everywhere, and bends about the face's lower end.
-        """
+        """Where the side begins to touch: along an upright face it bends about the lower end."""
         foot, tangent = self.foot(travel), self.path.clamp_tangent
         low, high = 0.0, arc_length
         while high - low > _CLOSEST:

@@ -49,10 +49,7 @@ class DependsOnMotion(Exception):  # noqa: N818  # not an error: an answer
 
 
 def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
-    """The stable state of less energy to which a vibrissa goes that has lost its hold.
-
-    Raises `DependsOnMotion` where that is far away.
-    """
+    """The stable state where a vibrissa lands that lost its hold; `DependsOnMotion` if far away."""
     # No more than it had, and what the foot has done since: its step is short, but so may a
     # vibrissa be bent that little.
     limit = start.energy * (1 + _SLACK) + start.force * _apart(foot, begin)
@@ -73,11 +70,7 @@ def _within(start: Contact, found: Contact) -> Contact:
 def _over_faces(
     scene: Scene, body: Polyhedron, start: Contact, foot: Floats, limit: float
 ) -> Contact | None:
-    """Of a mesh, in closed form; None if only the way down says where.
-
-    A side that comes over a corner goes on along an edge that meets there: on a face it rests only
-    with its tip, or all along it.
-    """
+    """Of a mesh, in closed form; None if only the way down says where."""
     point, normal, last = start.spot.point, start.spot.normal, start
     if start.tangent and start.arc_length > 1 - _TIP:  # drawn off an edge, it goes on as a tip
         last = start._replace(rotation=_LEAST, tangent=False)

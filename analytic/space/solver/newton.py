@@ -46,10 +46,7 @@ def settle_whole(scene: Scene, alone: Contact, foot: Floats) -> Contact | None:
 
 
 def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact | None:
-    """The contact of given phase; steps are halved while they do not come nearer.
-
-    Not so within some roundings, where halves of a step are roundings too.
-    """
+    """The contact of given phase; steps are halved while they do not come nearer."""
     if not _bent_outside(start):
         return None
     extent = max(1.0, float(np.abs(foot).max()), float(np.abs(start.centre).max()))

@@ -172,10 +172,7 @@ class Panel(NamedTuple):
 def panel(
     scene: Scene, law: Law, start: Sliding, reach: float, before: Panel | None = None
 ) -> Panel | None:
-    """From a state on; none if Newton's method does not find it.
-
-    It begins along the curve's tangent, or as the panel before, if that leads on.
-    """
+    """On from a state, along the tangent or as the panel before; none if Newton's method fails."""
     by = changed(start, law.along_curve(start))
     by = by / np.sqrt(by @ by)
     amounts = float(by @ start.vector) + reach * POINTS[1:]

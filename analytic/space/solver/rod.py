@@ -35,7 +35,6 @@ class Plane(NamedTuple):
 
     @classmethod
     def of(cls, tangent: Floats, normal: Floats) -> "Plane":
-        """The plane of two directions."""
         down = -float(normal @ tangent)
         sideways = normal + down * tangent
         sine = float(np.linalg.norm(sideways))

@@ -1,7 +1,4 @@
-"""Along the way of the foot with friction: contacts slide, stick, change phase, and end.
-
-A vibrissa that sticks at once is followed no further: a straight one cannot be longer.
-"""
+"""Along the way of the foot with friction: contacts slide, stick, change phase, and end."""
 
 from typing import NamedTuple
 
@@ -51,8 +48,6 @@ class Rubbed(NamedTuple):
 
 
 class Rubbing(Walker[Rubbed]):
-    """With Coulomb's friction."""
-
     def __init__(self, scene: Scene, way: StraightVibrissa, friction: float) -> None:
         super().__init__(scene, way)
         self._friction = friction
@@ -122,7 +117,6 @@ class Rubbing(Walker[Rubbed]):
         return None
 
     def _stretch(self, found: Panel) -> Stretch:
-        """Up to the first event."""
         margins = [self._margins(found, i) for i in range(1, len(POINTS))]
         end, event = 1.0, None
         for kind in margins[0]:

@@ -33,7 +33,6 @@ class Leg(NamedTuple):
     travel: float  # up to there [L]
 
     def foot(self, travel: float) -> Floats:
-        """Place of the foot."""
         return np.asarray(self.begin + (travel - self.travel) * self.onward)
 
 
@@ -105,9 +104,7 @@ def _across(vector: Floats, normal: Floats) -> Floats:
 
 
 def equations(state: Sliding, onward: Floats) -> Floats:
-    """Rates of what vanishes at rest, shape (5, 8): the foot's miss, the force's from its plane,
-    and in Phase A that of the arc length, in Phase B the vibrissa's slope against the body.
-    """
+    """Rates of what vanishes at rest, shape (5, 8)."""
     contact = state.contact
     plane, loaded, s = contact.plane, contact.loaded, contact.arc_length
     normal, t, e, rub = contact.spot.normal, plane.tangent, plane.lateral, state.rub

@@ -94,11 +94,7 @@ def end_stiffness(contact: Contact) -> Floats:
 
 
 def _stiffness_of_any(contact: Contact) -> Floats:
-    """K, of a hardly bent vibrissa by its leading order.
-
-    Shortening a vibrissa that is bent by w takes a stiffness of order 1/w^2 along it; so K is that
-    at a larger w, its rows and columns along the surface multiplied by the ratio.
-    """
+    """K; of a hardly bent vibrissa, whose K grows as 1/w^2, by that at a larger w."""
     if contact.rotation >= _SLIGHT:
         return end_stiffness(contact)
     alpha = np.pi / 2 - _SLIGHT if contact.tangent else contact.plane.alpha

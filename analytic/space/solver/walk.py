@@ -127,8 +127,6 @@ class Walker(ABC, Generic[Held]):
 
 
 class Gliding(Walker[Contact]):
-    """Without friction."""
-
     def __init__(self, scene: Scene, way: StraightVibrissa) -> None:
         super().__init__(scene, way)
         self._smooth = not isinstance(scene.body, Polyhedron)

@@ -50,11 +50,9 @@ class Ellipsoid(Body):
         )
 
     def scaled(self, factor: float) -> "Ellipsoid":
-        """With the same label."""
         return replace(self, semi_axes=factor * self.semi_axes, centre=factor * self.centre)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """By longitude and latitude; all of it."""
         return grid_patches(self.centre + (sphere_grid() * self.semi_axes) @ self.frame)
 
 

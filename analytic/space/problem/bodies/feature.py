@@ -50,7 +50,6 @@ class Feature(Body):
         return np.asarray(self.free.T @ self.free)
 
     def nearest(self, x: Floats, apart: float) -> Spot:
-        """Its foot of the perpendicular."""
         away = x - self.point
         if self.flat:
             return flat_spot(x, self.normal, float(away @ self.normal))
@@ -61,9 +60,7 @@ class Feature(Body):
         return Spot(x - across, normal, distance, turning)
 
     def scaled(self, factor: float) -> "Feature":
-        """With the same normals."""
         return replace(self, point=factor * self.point)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """Nothing is drawn of it."""
         return np.zeros((0, 3, 3))

@@ -59,16 +59,10 @@ class Polyhedron(Body):
 
     @property
     def smooth(self) -> bool:
-        """It has edges."""
         return False
 
     def nearest(self, x: Floats, apart: float) -> Spot:
-        """Walks over the triangles that the point sees, always to a nearer one.
-
-        The distance from a convex body has no local minimum but the least, so the walk ends there.
-        Next to an edge it is the same on either side to the second order: which side the point is
-        on decides then, not the distance, in which that drowns 1e-8 away from the edge.
-        """
+        """Walks over the triangles that the point sees, always to a nearer one."""
         ahead = self.normals @ x - self.heights
         face = int(np.argmax(ahead))
         if ahead[face] <= 0:
@@ -87,6 +81,7 @@ class Polyhedron(Body):
                 break
             tried = self._neighbours(face)
             tried = tried[ahead[tried] > 0]
+        # Next to an edge distances drown in rounding: which side the point is on decides.
         tied = np.flatnonzero(far <= (1 + _TIED) * best)
         if len(tied) > 1 and not (weight > 0).all():
             beyond = self._beyond(tried, x, found[tied])
@@ -95,11 +90,7 @@ class Polyhedron(Body):
         return self._spot(x, face, point, weight, apart, float(ahead[face]))
 
     def _nearest_on(self, tried: Integers, x: Floats) -> tuple[Floats, Floats]:
-        """Nearest points of triangles, and their barycentric coordinates, exactly 0 off a corner.
-
-        After C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5: the nearest of the
-        three edges, or the foot of the perpendicular where that is within.
-        """
+        """Nearest points of triangles (Ericson, Real-Time Collision Detection, 2005, 5.1.5)."""
         corners, sides, squares = self.corners[tried], self._sides[tried], self._squares[tried]
         away, each = x - corners, np.arange(len(tried))
         d11, d12, d22 = squares[:, 0], -(sides[:, 0] * sides[:, 2]).sum(1), squares[:, 2]
@@ -117,10 +108,7 @@ class Polyhedron(Body):
         return np.einsum("nk,nkc->nc", weights, corners), weights
 
     def _beyond(self, tried: Integers, x: Floats, points: Floats) -> Floats:
-        """How much nearer points of some triangles are than the plane through each point allows.
-
-        The plane is normal to the way to `x`; of the nearest point nothing is beyond it.
-        """
+        """How much nearer points of some triangles are than the plane through each allows."""
         others = self.corners[tried].reshape(-1, 3)
         away = x - points
         return np.asarray((away @ others.T).max(axis=1) - (away * points).sum(axis=1))
@@ -157,7 +145,6 @@ class Polyhedron(Body):
         return bool((self.normals[both] == self.normals[face]).all())
 
     def feature(self, spot: Spot) -> Feature:
-        """The face, the edge or the corner."""
         return Feature.of(spot)
 
     def features(self, point: Floats, off: float = 0.0) -> tuple[list[Feature], list[Feature]]:
@@ -215,11 +202,9 @@ class Polyhedron(Body):
         return replace(self, vertices=vertices, normals=planes[of_plane])
 
     def scaled(self, factor: float) -> "Polyhedron":
-        """With the same normals."""
         return replace(self, vertices=factor * self.vertices)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """Its triangles."""
         return self.corners
 
 
@@ -302,10 +287,7 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
 
 
 def solid(vertices: Floats, faces: Integers, normals: Floats, label: str) -> Polyhedron:
-    """A mesh of triangles of any sense, some perhaps without area: their normals are neighbours'.
-
-    Triangles are turned counterclockwise from outside, and those without area left out.
-    """
+    """A mesh of triangles of any sense, some perhaps without area, turned outwards."""
     one, other, third = vertices[faces].swapaxes(0, 1)
     sides = np.stack([other - one, third - other, one - third])
     areas = np.cross(sides[0], sides[1])

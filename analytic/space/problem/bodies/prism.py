@@ -28,7 +28,6 @@ class Cylinder(Body):
     label: str  # what reports call it
 
     def nearest(self, x: Floats, apart: float) -> Spot:
-        """From the nearest point of the axis."""
         middle, normal, far, turning = self._line.nearest(x, self.radius + apart)
         return Spot(middle + self.radius * normal, normal, far - self.radius, turning)
 
@@ -38,11 +37,9 @@ class Cylinder(Body):
         return Feature(self.through, sides, sides[0])
 
     def scaled(self, factor: float) -> "Cylinder":
-        """With the same label."""
         return replace(self, radius=factor * self.radius, through=factor * self.through)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """The part within reach."""
         sides = across(self.axis)
         middle = self.through + ((centre - self.through) @ self.axis) * self.axis
         angle = np.linspace(0, 2 * np.pi, 49)
@@ -53,10 +50,7 @@ class Cylinder(Body):
 
 @dataclass(frozen=True, eq=False)
 class Prism(Body):
-    """The prism of a planar contour; made by `prism`.
-
-    Above the contour's ends its sides go straight up, without end.
-    """
+    """The prism of a planar contour, above whose ends its sides go straight up without end."""
 
     contour: Contour  # the lower side of its section [length]
     origin: Floats  # of the contour's coordinates, shape (3,) [length]
@@ -69,7 +63,6 @@ class Prism(Body):
         return not isinstance(self.contour, Polygon)
 
     def nearest(self, x: Floats, apart: float) -> Spot:
-        """In the plane of the contour."""
         across_it, up, along = self.frame @ (x - self.origin)
         t = self._foot_of_perpendicular(across_it, up)
         point = self.contour.at(np.array([t]))
@@ -117,11 +110,9 @@ class Prism(Body):
         return x_off * cosine + y_off * sine, falling
 
     def scaled(self, factor: float) -> "Prism":
-        """With the same label."""
         return replace(self, contour=self.contour.scaled(factor), origin=factor * self.origin)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """The part within reach."""
         low, high = self.contour.t_range
         line = self.contour.outline(low, high, 65)
         local = self.frame @ (centre - self.origin)

@@ -119,11 +119,9 @@ class SmoothBody(Body):
         return np.asarray((found + found.T) / 2)
 
     def scaled(self, factor: float) -> "SmoothBody":
-        """With the same label."""
         return replace(self, factor=positive("factor", factor) * self.factor)
 
     def patches(self, centre: Floats, reach: float) -> Floats:
-        """By longitude and latitude of the normal; all of it."""
         return grid_patches(np.apply_along_axis(self._at, -1, sphere_grid()))
 
 
