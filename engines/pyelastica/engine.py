@@ -22,7 +22,7 @@ class _PyElastica:
     role: Role = "other model"
     requires = "pyelastica>=1.0,<2"
     tuned = (
-        "the rod begins half an element before the clamp; a contact of our own; stiffness of shear "
+        "the rod begins half an element before the clamp; a contact of our own, 1e9 EI/L^4; shear "
         "and stretch 1e5 EI/L^2; rest by Newton's method, instead of steps in time"
     )
 

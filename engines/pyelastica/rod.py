@@ -24,6 +24,7 @@ STIFFNESS = 1e5
 _REACH = 5  # unknowns; by so many at most are those apart that feel each other
 _NUDGE = 1e-10  # L, rad; for derivatives: contacts are 1e-8 deep
 _TURN = 0.1  # rad; no element turns farther in an iteration
+_FIRST, _FASTER = 2e-3, 1.02  # rad; downhill, or it jumps over a short edge; and ever farther
 _REST = 1e-5  # EI/L^2, EI/L; where it lies along an edge, whatever touches a little leaves 5e-6
 _ITERATIONS = 400  # most rests take five; the way down from a fold, some hundred
 _OVERSHOT = 0.1  # of the work at the begin of a move; so much may be undone at its end
@@ -32,7 +33,6 @@ _DRAG = 0.05  # EI/L^3, EI/L; the softest way to bend a whole rod of 20 elements
 _NEAR = 1e-4  # L; a way of the foot so short that it is the object that lets go, not the way
 _ASIDE = 0.02  # L, rad; a rest so far from where the rod was led is on another branch
 _DEEP = 2e-3  # L; contacts that are deeper lead Newton's method astray
-_STRIDE = 2  # radii; of the foot until something touches: less than the thinnest object is wide
 
 
 class ElasticaRod:
@@ -57,8 +57,8 @@ class ElasticaRod:
     def step(self, foot_x: float) -> None:
         """To rest, or where no number is one."""
         far = abs(foot_x - self._foot_x)
-        self._left(self._unknowns)  # what touches
-        ways = 1 if self._pressed[0].any() else max(1, int(np.ceil(far / (_STRIDE * self._radius))))
+        self._left(self._unknowns)  # until that finds a contact, ways are as an object is wide
+        ways = 1 if self._pressed[0].any() else max(1, int(np.ceil(far / (2 * self._radius))))
         for place in np.linspace(self._foot_x, foot_x, 1 + ways)[1:].tolist():
             led = self._lead(place)
             rests = self._pressed[0].max() < _DEEP and self._settle(far < _NEAR)
@@ -74,25 +74,26 @@ class ElasticaRod:
             self._foot_x += np.copysign(_NUDGE, way)
             change = (self._left(self._unknowns) - left) / _NUDGE
             self._foot_x = foot_x
-            self._unknowns = self._unknowns + _move(slopes, abs(way) * change)
+            self._unknowns = self._unknowns + _move(slopes, abs(way) * change, _TURN)
             self._left(self._unknowns)
         return self._unknowns
 
     def _settle(self, downhill: bool) -> bool:
         """Whether it found a rest; `downhill` from where it is, if its forces drive it away."""
         drag = 0.0
-        for _ in range(_ITERATIONS):
+        for i in range(_ITERATIONS):
+            turn = min(_TURN, _FIRST * _FASTER**i) if downhill else _TURN
             left = self._left(self._unknowns)
             if np.abs(left).max() < _REST:
                 return True
             slopes = self._slopes()
-            move = _move(slopes, left)
+            move = _move(slopes, left, turn)
             while left @ move < 0:
                 if not downhill:
                     return False
                 drag = max(_DRAG, 4 * drag)
                 slopes[_REACH] -= drag
-                move = _move(slopes, left)
+                move = _move(slopes, left, turn)
             drag = drag / 8 if drag > _DRAG else 0.0
             self._unknowns = self._unknowns + self._share(left, move) * move
         return False
@@ -149,8 +150,7 @@ class ElasticaRod:
         thinner = rod.voronoi_dilatation**3
         moment = rod.director_collection[:, 2, 0] @ rod.internal_couple[:, 0] / thinner[0]
         x, y = nodes[1]
-        along = rod.director_collection[2, :2]
-        turns = np.diff(np.unwrap(np.arctan2(-along[0], along[1]))) / thinner
+        turns = np.diff(self._unknowns[2::3], prepend=0.0) / thinner
         return State(
             nodes[1:].copy(),
             -np.array([fx, fy, moment + x * fy - y * fx]),
@@ -168,10 +168,10 @@ class ElasticaRod:
         self._foot_x, self._unknowns = kept
 
 
-def _move(slopes: Floats, left: Floats) -> Floats:
-    """By which linear forces would vanish; no element turns too far."""
+def _move(slopes: Floats, left: Floats, turn: float) -> Floats:
+    """By which linear forces would vanish; no element turns farther than that."""
     move = solve_banded((_REACH, _REACH), slopes, -left, check_finite=False)
-    return move * min(1.0, _TURN / max(np.abs(move[2::3]).max(), _TURN))
+    return move * (turn / max(np.abs(move[2::3]).max(), turn))
 
 
 def _rod(elements: int, length: float) -> Any:  # noqa: ANN401
