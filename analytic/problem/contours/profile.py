@@ -20,7 +20,6 @@ _STENCIL = np.arange(-3.0, 4.0)  # in steps
 _TO_POWERS = np.linalg.inv(np.vander(_STENCIL, increasing=True))
 
 
-
 @dataclass(frozen=True)
 class Profile(Contour):
     """A strictly convex C1 contour seen from below, parametrised by its slope angle alpha.
