@@ -22,9 +22,9 @@ def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: boo
 
 
 def _provenance(case: Case, events: Points) -> dict[str, object]:
-    return {**case.provenance(), "engine": _engine(), "events": dict(events)}
+    return {**case.provenance(), "engine": engine(), "events": dict(events)}
 
 
 @cache
-def _engine() -> str:
+def engine() -> str:
     return f"vibrissa-testbed {version('vibrissa-testbed')}"
