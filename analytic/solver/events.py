@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -288,7 +288,10 @@ def _first_touch(contour: Contour, t: float, beam: Beam) -> Event:
     excess = np.where(leant > 0, leant, np.minimum(point.eta - 1, INSIDE))
     vibrissa = Vibrissa(radius=beam.radius / beam.length)
     found = States(point, none, excess, none, point.eta, none, none, none, vibrissa)
-    return _rows(to_columns(found, Units.of(beam)))[0]
+    touch = _rows(to_columns(found, Units.of(beam)))[0]
+    # Where the contour ends below the tip it is a corner, which the side touches.
+    reached = min(float(point.eta[0]), 1.0) * beam.length
+    return replace(touch, force_x=0.0, contact_arc_length=reached)
 
 
 def _nowhere() -> Event:
