@@ -1,3 +1,3 @@
 from .boundary_value import boundary_value_problem as boundary_value_problem
-from .quadrature import tip_angle_by_quadrature as tip_angle_by_quadrature
-from .shooting import tip_angle_by_shooting as tip_angle_by_shooting
+from .tip_angle import tip_angle_by_quadrature as tip_angle_by_quadrature
+from .tip_angle import tip_angle_by_shooting as tip_angle_by_shooting

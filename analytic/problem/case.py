@@ -16,13 +16,12 @@ from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
-from analytic.problem.first_touch import first_on_way
 from analytic.problem.limits import AnyCase
 from analytic.problem.numbers import pair, within
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.provenance import recorded_contours
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
-from analytic.problem.rest import FirstTouch, first_touch
+from analytic.problem.rest import FirstTouch, first_on_way, first_touch
 from analytic.problem.shown import Shown, new_figure
 from analytic.problem.support import Support, check_support, support_record
 from analytic.problem.unloaded import Unloaded

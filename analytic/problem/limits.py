@@ -8,6 +8,7 @@ from analytic.problem.support import (
     Support,
     beyond_the_paper,
     is_plain,
+    refuse,
     require_plain,
     require_weightless,
 )
@@ -54,9 +55,7 @@ class AnyCase(OfVibrissa):
         """Refuse a clamp that leans, turns or leaves its line, and a weight."""
         self.require_sweep(who)
         require_weightless(who, self.support)
-        if self.support.clamp_angle:
-            allowed = f"0: {who} cannot take it into account"
-            raise InputError("clamp_angle", self.support.clamp_angle, allowed, "leave it out")
+        refuse(who, "clamp_angle", self.support.clamp_angle, 0.0)
 
     def require_sweep(self, who: str) -> Sweep:
         """Refuse several objects, and a clamp that turns or leaves its line on its way."""

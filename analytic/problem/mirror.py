@@ -8,11 +8,6 @@ from analytic.problem.errors import require
 from analytic.problem.readings import Readings
 
 
-def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
-    """The readings of a case; a sweep to the right is the mirror image of one to the left."""
-    return facing(case, solve(leftward(case)))
-
-
 def leftward(case: Case) -> Case:
     """A case whose clamp goes to the left: itself, or its mirror image."""
     require("case", case, Case, "named_case('catenary') makes one")

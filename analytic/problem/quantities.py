@@ -25,6 +25,10 @@ class Quantity:
         return self.larger(case, value - self.value(case))
 
 
+def _rigidity(case: Case) -> float:
+    return case.beam.base_rigidity
+
+
 def _stiffer(case: Case, by: float) -> Case:
     return replace(case, beam=case.beam.scaled(rigidity=1 + by / case.beam.base_rigidity))
 
@@ -78,13 +82,7 @@ def _length(case: Case) -> float:
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "flexural_rigidity": Quantity(
-        "N m^2",
-        lambda case: case.beam.base_rigidity,
-        lambda case: case.beam.base_rigidity,
-        _stiffer,
-        positive=True,
-    ),
+    "flexural_rigidity": Quantity("N m^2", _rigidity, _rigidity, _stiffer, positive=True),
     "length": Quantity("m", _length, _length, _longer, positive=True),
     "radius": Quantity("m", lambda case: case.beam.radius, _length, _thicker, positive=True),
     "tip_radius": Quantity("m", _tip_radius, _length, _thicker_at_its_tip, positive=True),
@@ -112,12 +110,7 @@ QUANTITIES: dict[str, Quantity] = {
         lambda case, by: replace(case, friction=case.friction + by),
         positive=True,
     ),
-    "clamp_angle": Quantity(
-        "rad",
-        lambda case: case.clamp_angle,
-        lambda case: 1.0,
-        _leaning,
-    ),
+    "clamp_angle": Quantity("rad", lambda case: case.clamp_angle, lambda case: 1.0, _leaning),
     "foot_x": Quantity("m", lambda case: 0.0, _length, Case.shifted),
     "height": Quantity(
         "m",

@@ -306,13 +306,20 @@ def solved_readings(
     source: str,
     provenance: Callable[[], Mapping[str, Any]],
     snap_off: float | None,
+    finite: bool,
 ) -> Readings:
     """Readings of a solver's own columns, not checked; the table is made when first asked for."""
+    if not finite:  # beyond the largest number in the case's units: an error says so
+        return Readings(_table(columns), beam, source, provenance())
     found = object.__new__(Readings)
     to_make = {"table": partial(_table, columns), "provenance": provenance}
     parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}
     found.__dict__.update(parts)
     return found
+
+
+def are_finite(columns: Mapping[str, Floats | Integers]) -> bool:
+    return not any(np.isinf(values).any() for values in columns.values())
 
 
 def _table(columns: Mapping[str, Floats | Integers]) -> "pd.DataFrame":

@@ -16,7 +16,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import unknown
-from analytic.problem.readings import Readings, solved_readings
+from analytic.problem.readings import Readings, are_finite, solved_readings
 
 DIVERGED = {"phase": "free", "status": "diverged"}
 """The row of a station without numbers."""
@@ -94,7 +94,6 @@ class Recorder(AnyRecorder[Readings]):
     case: Case
 
     def readings(self) -> Readings:
-        beam = self.case.beam
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
         for name in WORDS:
             columns[name] = np.array([_number(name, word) for word in columns[name]])
@@ -102,13 +101,10 @@ class Recorder(AnyRecorder[Readings]):
             name: None if p is None else self.case.running_at(p)
             for name, p in self.events().items()
         }
-        provenance = self._provenance(events)
-        if any(np.isinf(values).any() for values in columns.values()):
-            from analytic.problem.table import as_table  # slow to load
-
-            # Beyond the largest number in the case's units: an error says so.
-            return Readings(as_table(columns), beam, self.source, provenance)
-        return solved_readings(columns, beam, self.source, lambda: provenance, events["snap_off"])
+        beam, provenance, finite = self.case.beam, self._provenance(events), are_finite(columns)
+        return solved_readings(
+            columns, beam, self.source, lambda: provenance, events["snap_off"], finite
+        )
 
 
 def _number(column: str, word: str) -> int:

@@ -103,14 +103,12 @@ def require_uniform(who: str, beam: Beam) -> None:
             allowed = f"a number: {who} cannot take it into account"
             raise InputError(f"beam.{name}", value, allowed, "give a mean")
     if beam.varies:
-        allowed = f"{beam.radius:g}: {who} cannot take it into account"
-        raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
+        refuse(who, "beam.tip_radius", beam.tip_radius, beam.radius)
 
 
 def require_weightless(who: str, held: Support) -> None:
     for name, value in zip(_WEIGHT, held.weight, strict=True):
-        if value:
-            raise InputError(name, value, f"0: {who} cannot take it into account", "leave it out")
+        refuse(who, name, value, 0.0)
 
 
 def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
@@ -122,9 +120,13 @@ def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
         ("friction", held.friction, 0.0),
         ("clamp_angle", held.clamp_angle, 0.0),
     ):
-        if value != plain:
-            allowed = f"{plain:g}: {who} cannot take it into account"
-            raise InputError(name, value, allowed, "leave it out")
+        refuse(who, name, value, plain)
+
+
+def refuse(who: str, name: str, value: object, plain: float) -> None:
+    if value != plain:
+        allowed = f"{plain:g}: {who} cannot take it into account"
+        raise InputError(name, value, allowed, "leave it out")
 
 
 def beyond_the_paper(beam: Beam, held: Support) -> dict[str, Varying]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -13,13 +14,14 @@ from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SCHEMA
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
-from analytic.problem.readings_shown import as_html, as_text, counts, draw, new_axes
-from analytic.problem.shown import Shown
+from analytic.problem.shown import Shown, stacked, with_unit
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_ROWS = 8  # of the table that a notebook shows
 
 
 @contextmanager
@@ -124,21 +126,62 @@ class SweepTable(Shown):
             One a reading, ``force_x``, ``force_y``, ``moment_z``; in space ``force`` and
             ``moment``, each with three components.
         """
-        axes = new_axes(self) if axes is None else axes
-        draw(self, axes)
+        axes = self._new_axes() if axes is None else axes
+        along, trusted = self.running_values, self.trusted
+        label = self.source.replace("$", r"\$")
+        for ax, names in zip(axes, self.panels.values(), strict=True):
+            for name in names:
+                values = self.values(name)
+                said = label if len(names) == 1 else f"{label}: {name}"
+                ax.plot(along, values, ".-", markersize=3, linewidth=0.8, label=said)
+                if not trusted.all():
+                    there = along[~trusted], values[~trusted]
+                    ax.plot(*there, "x", color="tab:red", label="not trusted")
+        for ax in axes if len(self.panels) < len(self.sensed) - 1 else axes[:1]:
+            ax.legend(fontsize="small")
         return list(axes)
 
+    def _new_axes(self, figure: "Figure | None" = None) -> "list[Axes]":
+        """Axes for what the clamp reads, one above the other."""
+        labels = (with_unit(label, self.beam) for label in self.panels)
+        return stacked(labels, with_unit(self.running, self.beam), figure)
+
     def _draw(self, figure: "Figure") -> None:
-        self.plot(new_axes(self, figure))
+        self.plot(self._new_axes(figure))
 
     def _tiles(self) -> Mapping[str, object]:
-        return {"source": self.source, "stations": len(self.table), **counts(self)}
+        return {"source": self.source, "stations": len(self.table), **self._counts()}
+
+    def _counts(self) -> dict[str, str]:
+        """How many stations are in which phase, and of which status."""
+        return {
+            name: ", ".join(
+                f"{word} {n}" for word, n in self.table[name].value_counts(sort=False).items()
+            )
+            for name in ("phase", "status")
+            if name in self.table
+        }
 
     def _below(self) -> str:
-        return as_html(self)
+        rows = self.table.to_html(max_rows=_ROWS, float_format="{:.6g}".format, border=0)
+        return f"<pre>{escape(repr(self))}</pre>{rows}"
 
     def __repr__(self) -> str:
-        return as_text(self)
+        beam, running = self.beam, self.running_values
+        beyond = "".join(f", {name} {value:g}" for name, value in self.beyond_the_paper.items())
+        loads = [name for name in self.sensed if not name.startswith("foot")]
+        sizes = (f"{name} {np.abs(self.table[name]).max():.4g}" for name in loads)
+        lines = [
+            f"{type(self).__name__} ({self.source}): {len(running)} stations, "
+            f"{self.running} from {running[0]:.6g} to {running[-1]:.6g}",
+            f"  beam{' (SI)' if beam.si else ''}: length {beam.length:g}, "
+            f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}{beyond}",
+            f"  largest magnitudes: {', '.join(sizes)}",
+        ]
+        lines += [f"  {name}: {said}" for name, said in self._counts().items()]
+        if self.gaps:
+            lines.append(f"  gaps: {self.gaps} stations without a force or the moment")
+        return "\n".join(lines)
 
     def write(self, path: str | Path) -> Path:
         """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.

@@ -40,12 +40,6 @@ class Equilibria(NamedTuple):
             return np.where(self.root_f == 0, self.point.eta, self.span.q / self.root_f)
 
     @property
-    def tip_angle(self) -> Floats:
-        """Slope angle of the vibrissa at the contact [rad]."""
-        tip = np.pi / 2 - (self.tip_rotation + least_rotation(self.point.alpha))
-        return np.where(self.tangent, self.point.alpha, tip)
-
-    @property
     def foot_x(self) -> Floats:
         """Foot position x0 (Will et al., eqs. 13 and 22) [L]."""
         return np.asarray(self.point.xi - self.reach)

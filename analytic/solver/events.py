@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +30,7 @@ from analytic.solver.general.chain import (
     with_second_contacts,
 )
 from analytic.solver.general.path import follow
-from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.states import INSIDE, States, Vibrissa
 from analytic.solver.given import given_contour
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
@@ -283,20 +283,15 @@ def _rows(columns: ReadingColumns) -> list[Event]:
 
 def _first_touch(contour: Contour, t: float, beam: Beam) -> Event:
     """The straight, unloaded vibrissa whose tip, or side, meets the contour."""
-    alpha, xi, eta = (float(x) for (x,) in contour.at(np.array([t]))[:3])
-    return Event(
-        foot_x=xi * beam.length,
-        force_x=0.0,
-        force_y=0.0,
-        moment_z=0.0,
-        phase="tip" if alpha < np.pi / 2 else "tangent",
-        contact_angle=alpha,
-        contact_arc_length=min(eta, 1.0) * beam.length,
-        contact_x=xi * beam.length - beam.radius * math.sin(alpha),
-        contact_y=eta * beam.length + beam.radius * math.cos(alpha),
-        tip_angle=np.pi / 2,
-        status="ok",
-    )
+    point, none = contour.at(np.array([t])), np.zeros(1)
+    leant = np.pi / 2 - point.alpha
+    excess = np.where(leant > 0, leant, np.minimum(point.eta - 1, INSIDE))
+    vibrissa = Vibrissa(radius=beam.radius / beam.length)
+    found = States(point, none, excess, none, point.eta, none, none, none, vibrissa)
+    touch = _rows(to_columns(found, Units.of(beam)))[0]
+    # Where the contour ends below the tip it is a corner, which the side touches.
+    reached = min(float(point.eta[0]), 1.0) * beam.length
+    return replace(touch, force_x=0.0, contact_arc_length=reached)
 
 
 def _nowhere() -> Event:

@@ -7,7 +7,7 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, CONTACT, PHASE_NUMBER
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import solve_either_way
+from analytic.problem.mirror import facing, leftward
 from analytic.problem.poses import along_x
 from analytic.problem.readings import Readings
 from analytic.problem.table import as_table, says
@@ -46,7 +46,7 @@ def with_friction(case: Case, coefficient: float) -> Readings:
         raise InputError("friction coefficient", coefficient, "from -0.5 to 0.5", "0.1 is usual")
     if isinstance(case, Case):
         case.require_plain("friction of either sign")
-    return solve_either_way(case, lambda leftward: _leftward(leftward, coefficient))
+    return facing(case, _leftward(leftward(case), coefficient))
 
 
 def _leftward(case: Case, coefficient: float) -> Readings:

@@ -8,12 +8,12 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, STATUS_NUMBER
 from analytic.problem.contours.many import Contours
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, are_finite
 from analytic.solver.branch import trace
 from analytic.solver.columns import Units, to_columns, unloaded_columns
 from analytic.solver.general.path import located
 from analytic.solver.general.states import Vibrissa
-from analytic.solver.recorded import are_finite, as_readings
+from analytic.solver.recorded import as_readings
 from analytic.solver.residuals import inexact, residuals
 from analytic.solver.stations import solve_stations
 

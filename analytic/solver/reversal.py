@@ -1,7 +1,5 @@
 """Hysteresis of a vibrissa that rubs: the limits of stiction, and a sweep that turns round."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pandas as pd
 
@@ -18,37 +16,6 @@ from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.general.stations import solve_places
 from analytic.solver.general.sticking import between, stick
 from analytic.solver.residuals import without_inexact
-
-
-@dataclass(frozen=True)
-class SlidingBranch:
-    """States that slide one way, in a sweep to the left."""
-
-    vibrissa: Vibrissa
-    path: Path
-
-    @classmethod
-    def of(cls, case: Case, sense: float) -> "SlidingBranch":
-        """Follow the states that slide on (1), or back (-1)."""
-        vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
-        touch = first_touch(case.centreline, case.reach, vibrissa.at_rest.shape)
-        path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
-        if not path.complete:
-            place = path.p[-1] * case.beam.length
-            raise ArithmeticError(f"the equilibria are lost beyond foot_x = {place:.6g}")
-        return cls(vibrissa, path)
-
-    def at(self, case: Case, foot_x: Floats) -> Floats:
-        z, known = solve_places(self.path, case.poses, foot_x)
-        if not known.all():
-            place = foot_x[int(np.argmin(known))] * case.beam.length
-            raise ArithmeticError(f"no state is found at foot_x = {place:.6g}")
-        return z
-
-    def holds(self, foot_x: Floats) -> Booleans:
-        """Whether there is a state of the branch at foot positions."""
-        last = self.path.p[self.path.snap_off]
-        return np.asarray((foot_x < self.path.p[0]) & (foot_x >= last))
 
 
 def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -84,12 +51,12 @@ def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
     foot_x = case.foot_x / case.beam.length
     tables = []
     for sense in (1.0, -1.0):
-        branch = SlidingBranch.of(case, sense)
+        path = _sliding(case, sense)
         columns = _unloaded(case, case.foot_x)
-        held = branch.holds(foot_x)
+        held = _holds(path, foot_x)
         if held.any():
             angle = np.full(int(held.sum()), sense * np.arctan(case.friction))
-            _fill(columns, held, case, branch.at(case, foot_x[held]), angle)
+            _fill(columns, held, case, _states(path, case, foot_x[held]), angle)
         tables.append(_table(columns))
     return tables[0], tables[1]
 
@@ -133,20 +100,20 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
     if case.sweep.direction == "right":
         return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
     length = case.beam.length
-    onward, back = SlidingBranch.of(case, 1.0), SlidingBranch.of(case, -1.0)
-    first, last = onward.path.p[0], onward.path.p[onward.path.snap_off]
+    onward, back = _sliding(case, 1.0), _sliding(case, -1.0)
+    first, last = onward.p[0], onward.p[onward.snap_off]
     if not last <= turn_at / length < first:
         snap_off = f"{last * length:.6g}, where the vibrissa snaps off"
         allowed = f"from {snap_off}, to {first * length:.6g}, where it first touches"
         raise InputError("turn_at", turn_at, allowed, "it turns round while it touches")
     foot = np.linspace(turn_at, case.foot_x[0], stations)
     foot_x = foot / length
-    turning = onward.at(case, foot_x[:1])
+    turning = _states(onward, case, foot_x[:1])
     way = stick(case.centreline, onward.vibrissa, turning[0], float(foot_x[-1]))
     columns = _unloaded(case, foot)
     sliding = np.full(stations, "free", dtype="<U8")
     sticks = (foot_x > foot_x[0]) & (foot_x < way.foot_x[-1])
-    slides = (foot_x >= way.foot_x[-1]) & back.holds(foot_x) & (way.then == "slides back")
+    slides = (foot_x >= way.foot_x[-1]) & _holds(back, foot_x) & (way.then == "slides back")
     unsolved = (foot_x >= way.foot_x[-1]) & (way.then == "unsolved")
     limit = np.arctan(case.friction)
     on = np.arange(stations) == 0
@@ -156,7 +123,7 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
         _fill(columns, sticks, case, z[:, :3], z[:, 3])
     if slides.any():
         angle = np.full(int(slides.sum()), -limit)
-        _fill(columns, slides, case, back.at(case, foot_x[slides]), angle)
+        _fill(columns, slides, case, _states(back, case, foot_x[slides]), angle)
     for name in (*CLAMP_READINGS, *CONTACT):
         columns[name][unsolved] = np.nan
     for word, which in (("on", on), ("sticks", sticks), ("back", slides), ("unsolved", unsolved)):
@@ -169,6 +136,30 @@ def _check(case: Case) -> None:
     case.require_sweep("a sweep that turns round")
     if case.friction == 0:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
+
+
+def _sliding(case: Case, sense: float) -> Path:
+    """The states that slide on (1), or back (-1), in a sweep to the left."""
+    vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
+    touch = first_touch(case.centreline, case.reach, vibrissa.at_rest.shape)
+    path = follow(case.centreline, vibrissa, touch, case.reach, case.poses)
+    if not path.complete:
+        place = path.p[-1] * case.beam.length
+        raise ArithmeticError(f"the equilibria are lost beyond foot_x = {place:.6g}")
+    return path
+
+
+def _holds(path: Path, foot_x: Floats) -> Booleans:
+    """Whether a path has a state at foot positions."""
+    return np.asarray((foot_x < path.p[0]) & (foot_x >= path.p[path.snap_off]))
+
+
+def _states(path: Path, case: Case, foot_x: Floats) -> Floats:
+    z, known = solve_places(path, case.poses, foot_x)
+    if not known.all():
+        place = foot_x[int(np.argmin(known))] * case.beam.length
+        raise ArithmeticError(f"no state is found at foot_x = {place:.6g}")
+    return z
 
 
 def _unloaded(case: Case, foot: Floats) -> ReadingColumns:

@@ -8,12 +8,12 @@ from analytic.checks.certificate import certify
 from analytic.problem.case import Case
 from analytic.problem.columns import STATUS_NUMBER
 from analytic.problem.errors import require
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, are_finite
 from analytic.solver.columns import Units
 from analytic.solver.general import sweep as general
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.plain import solve_plain
-from analytic.solver.recorded import are_finite, as_readings
+from analytic.solver.recorded import as_readings
 from analytic.solver.residuals import inexact, residuals
 
 _CERTIFIED = 1e-9  # L and EI/L; the integration is good to 1e-12

@@ -27,8 +27,6 @@ class Contact(NamedTuple):
     """A vibrissa against a spot of the body, wherever its foot is; lengths in L."""
 
     spot: Spot
-    on_parallel: Floats
-    """The spot's place on the parallel surface, shape (3,)."""
     plane: Plane
     loaded: Loaded
     rotation: float
@@ -39,6 +37,11 @@ class Contact(NamedTuple):
     """Phase B."""
     centre: Floats
     """Of the vibrissa's axis at the contact, shape (3,)."""
+
+    @property
+    def on_parallel(self) -> Floats:
+        """The spot's place on the parallel surface, shape (3,)."""
+        return self.spot.point + APART * self.spot.normal
 
     @property
     def free(self) -> float:
@@ -84,13 +87,5 @@ def contact_at(scene: Scene, x: Floats, free: float, tangent: bool) -> Contact:
     spot = scene.body.nearest(x, APART)
     plane = Plane.of(scene.tangent, spot.normal)
     rotation, arc_length = (np.pi / 2 - plane.alpha, free) if tangent else (free, 1.0)
-    return Contact(
-        spot,
-        spot.point + APART * spot.normal,
-        plane,
-        loaded_part(rotation, plane.alpha),
-        rotation,
-        arc_length,
-        tangent,
-        spot.point + scene.radius * spot.normal,
-    )
+    loaded, centre = loaded_part(rotation, plane.alpha), spot.point + scene.radius * spot.normal
+    return Contact(spot, plane, loaded, rotation, arc_length, tangent, centre)

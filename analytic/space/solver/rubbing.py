@@ -1,18 +1,22 @@
 """Along the way of the foot with friction: contacts slide, stick, change phase, and end."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import across
 from analytic.space.problem.straight import StraightVibrissa
-from analytic.space.solver.contact import Scene
-from analytic.space.solver.first_slip import first_slips
+from analytic.space.solver.contact import APART, Scene
 from analytic.space.solver.panel import POINTS, Law, Panel, panel
 from analytic.space.solver.sliding import Leg, Sliding, state_of
 from analytic.space.solver.walk import LOOSE, Walker
 
+_LOOKED_AT = 720  # directions
+_ALIKE = 1e-9  # of the foot's speed
+_BEFORE = 1e-13  # L of the way: touching, but not within
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's tangent
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
 _SAFE = 0.8  # of a length that would just be short enough
@@ -23,6 +27,42 @@ _CLOSE = 1e-14  # of a panel, to which events are enclosed
 _STEEP = 1e3
 _MARKED = 1e-12  # L, to a corner of the way
 _STILL = 1e-9  # of a speed: a contact that has just begun to slide hardly does
+
+
+def first_slips(
+    scene: Scene, way: StraightVibrissa, touch: float, friction: float
+) -> Iterator[Sliding]:
+    """States at first contact, still straight, by the direction of friction."""
+    gap, onward = way.gap(touch - _BEFORE), way.onward(touch)
+    normal = gap.spot.normal
+    for tau in _directions(normal, scene.tangent, onward, friction):
+        numbers = 0.0, gap.arc_length, touch
+        force = normal + friction * tau
+        place = gap.spot.point + APART * normal
+        vector = np.concatenate([place, friction * tau, force, np.array(numbers)])
+        yield state_of(scene, vector, gap.arc_length < 1)
+
+
+def _directions(normal: Floats, t: Floats, onward: Floats, friction: float) -> Iterator[Floats]:
+    """Of friction that is along the velocity, of a vibrissa that is pressed."""
+    sides = across(normal)
+
+    def both(angle: Floats) -> tuple[Floats, Floats]:
+        """Of the velocity: across friction, and along it."""
+        tau = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ sides
+        bends = normal + friction * tau
+        bends = bends - np.multiply.outer(bends @ t, t)
+        presses = bends @ normal
+        pressed = -(onward @ normal) / np.where(presses > 0, presses, np.nan)
+        beside = np.cross(normal, tau)
+        return tuple(w @ onward + pressed * (bends * w).sum(axis=-1) for w in (beside, tau))
+
+    angles = np.linspace(0, 2 * np.pi, _LOOKED_AT + 1) + 1e-3
+    values = both(angles)[0]
+    for i in np.flatnonzero(values[:-1] * values[1:] < 0):
+        root = np.asarray(brentq(lambda x: float(both(x)[0]), angles[i], angles[i + 1], xtol=1e-15))
+        if both(root)[1] <= _ALIKE:
+            yield np.array([np.cos(root), np.sin(root)]) @ sides
 
 
 class Stretch(NamedTuple):

@@ -73,16 +73,10 @@ def state_of(scene: Scene, vector: Floats, tangent: bool) -> Sliding:
     force = (spot.normal + rub) / np.sqrt(1 + rub @ rub)
     alpha = float(np.arctan2(force @ lateral, -(force @ t)))
     excess = rotation - max(0.0, -2 * alpha)
-    contact = Contact(
-        spot,
-        spot.point + APART * spot.normal,
-        Plane(t, force, lateral, alpha),
-        loaded_part(excess, alpha) if excess != 0 else _STRAIGHT,
-        excess,
-        arc_length,
-        tangent,
-        spot.point + scene.radius * spot.normal,
-    )
+    loaded = loaded_part(excess, alpha) if excess != 0 else _STRAIGHT
+    centre = spot.point + scene.radius * spot.normal
+    plane = Plane(t, force, lateral, alpha)
+    contact = Contact(spot, plane, loaded, excess, arc_length, tangent, centre)
     end = np.cos(rotation) * t + np.sin(rotation) * lateral
     sides = across(spot.normal)
     turned = spot.turning @ sides.T

@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
-from importlib.metadata import version
 
 import numpy as np
 import pandas as pd
@@ -12,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from analytic.from_clamp.contact import contact_bent_right
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.solver.recorded import engine
 from analytic.space.checks.rod import rod_residuals
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
@@ -85,7 +84,7 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     table = pd.DataFrame(rows, columns=[*_COLUMNS, *(_RUBBED if case.friction else ())])
     foot = dict(zip(FOOT, feet.T, strict=True))
     table = pd.concat([pd.DataFrame({"travel": travel, **foot}), table], axis=1)
-    provenance = {**case.provenance(), "engine": _engine(), "events": stated(case, walked.events)}
+    provenance = {**case.provenance(), "engine": engine(), "events": stated(case, walked.events)}
     tangent = case.path.clamp_tangent
     readings = SpatialReadings(table, beam, tangent, "analytic", provenance)
     return _with_certificate(readings) if certified else readings
@@ -154,8 +153,3 @@ def _with_certificate(readings: SpatialReadings) -> SpatialReadings:
         residual=np.fmax(table["residual"], found), status=table["status"].mask(wrong, "diverged")
     )
     return replace(readings, table=table)
-
-
-@cache
-def _engine() -> str:
-    return f"vibrissa-testbed {version('vibrissa-testbed')}"

@@ -17,6 +17,7 @@ from analytic import (
     find_events,
     named_case,
     parabola,
+    polygon,
     solve_sweep,
 )
 from analytic.problem.support import Support
@@ -128,3 +129,11 @@ def test_residuals_show_a_wrong_answer(column):
     found = np.maximum(*residuals(columns, vibrissa, Units.of(exact.beam)).values())
     touching = ~free & (np.abs(columns[column]) > 1e-2)
     assert (found[touching] > 1e-8).all()
+
+
+def test_a_contour_that_ends_below_the_tip_is_first_touched_by_the_side() -> None:
+    corner = polygon([(-0.5, 0.4), (0.5, 0.4), (0.7, 0.6), (0.0, 0.7)])
+    first = find_events(corner, Beam(radius=0.01)).first_contact
+    assert first.contact_arc_length == pytest.approx(0.6, abs=1e-15)
+    assert (first.foot_x, first.contact_x) == pytest.approx((0.71, 0.7), abs=1e-15)
+    assert first.force_x == first.force_y == first.moment_z == 0
