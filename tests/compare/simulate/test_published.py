@@ -27,9 +27,10 @@ FOUND = {
         {"clamp", "torsion", "gravity", "contact", "damping"}, {"torsion"}, None,
     ),
     "Tentacle": ({"clamp", "gravity", "contact", "damping"}, set(), 0.0080),
-    # Ten links are 0.8 per cent off by themselves.
+    # Ten links are 0.8 per cent off by themselves. Swept until it would leave its plane: over the
+    # whole way, where it slips off sideways, the mean is 0.0113.
     "Elephant's trunk": (
-        {"clamp", "limits", "radius", "gravity", "contact", "damping"}, set(), 0.0116,
+        {"clamp", "limits", "radius", "gravity", "contact", "damping"}, set(), 0.0129,
     ),
     # A hand of a million kilograms: MuJoCo's solver stopped before contacts held.
     "Whip of 15": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0095),
