@@ -129,7 +129,6 @@ class Agreement:
         return self._inside(joints, foot_x) < _PLACES
 
     def _inside(self, joints: Floats, foot_x: float) -> float:
-        """How deep it is in the object."""
         out, _ = self._surface.outward(joints + np.array([foot_x, 0.0]))
         return float((self._beyond_tip - out).max())
 
@@ -189,7 +188,6 @@ class Agreement:
         yield "forces and normals", float(turned.max()), _NORMALS
 
     def _springs(self, state: State) -> Floats:
-        """The moments that the case's own springs have in this shape."""
         turns = self._bent(state) if state.turns is None else state.turns
         return np.asarray(-turns / self._layout.compliances)
 

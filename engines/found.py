@@ -99,7 +99,6 @@ def _check(engine: Engine) -> None:
 
 
 def installed(requires: str) -> tuple[str | None, str | None]:
-    """Whether a distribution is there."""
     needed = Requirement(requires)
     try:
         there = version(needed.name)

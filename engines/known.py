@@ -20,7 +20,6 @@ _LISTED = "`vibrissa list engines` lists them"
 
 
 def named_engines(names: str) -> list[str]:
-    """The engines of a list."""
     listed = [name.strip() for name in names.split(",")]
     if len(set(listed)) == len(listed) and set(listed) <= set(_SHIPPED):
         return listed  # nothing in them is worth a look at every distribution that is installed
@@ -36,7 +35,6 @@ def named_engines(names: str) -> list[str]:
 
 
 def known_engines() -> dict[str, str]:
-    """Where each engine is."""
     offered = {point.name: point.value for point in sorted(_offered(), key=lambda p: p.value)}
     return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
 

@@ -20,7 +20,6 @@ class _Mujoco:
     def sweep(
         self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
     ) -> Readings:
-        """By `mujoco_models.simulate_sweep`."""
         return simulate_sweep(case, settings, advance)
 
 

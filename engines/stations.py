@@ -68,7 +68,6 @@ class Row:
 
 
 def free_row(case: Case) -> Row:
-    """What a vibrissa reads that touches nothing."""
     return Row(tip_angle=float(case.unloaded.at(np.array(1.0))[2]))
 
 
@@ -153,7 +152,6 @@ def sweep_stations(
 
 
 def _recorded(row: Row) -> dict[str, Any]:
-    """As the readings have it."""
     columns = asdict(row)
     status = "unsettled" if columns.pop("doubt") else "ok"
     return {**columns, "status": status}
@@ -171,7 +169,6 @@ class _Walk:
         self.snap_off: float | None = None
 
     def go_to(self, target: float) -> Row:
-        """The state at a station."""
         if self.snap_off is not None:
             return self._free
         if self._lost is None:

@@ -129,7 +129,6 @@ class SteppedRest:
         self._found = self._foot_x, self._kept
 
     def at(self, foot_x: float) -> Row:
-        """By moving the foot, and waiting."""
         stepper = self._stepper
         stepper.go_back(self._kept)
         for place in np.linspace(self._foot_x, foot_x, 1 + stepper.period)[1:].tolist():
@@ -139,7 +138,6 @@ class SteppedRest:
         return self._row(state, foot_x) if isinstance(state, State) else state
 
     def accept(self) -> None:
-        """Go on from the last station."""
         self._foot_x, self._kept = self._found
 
     def _wait(self, foot_x: float) -> State | Row:

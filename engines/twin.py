@@ -110,7 +110,6 @@ class Twin:
         self.lookout = Lookout(self, obstacle, radius, self.layout)
 
     def show(self, window: int) -> None:
-        """Let the obstacle be what it has for a window."""
         self._window = window
         self._linkage.attend(window, self._watched)
 
@@ -120,7 +119,6 @@ class Twin:
         self._linkage.attend(self._window, beads)
 
     def imbalance(self, pose: Pose, angles: Floats) -> Floats:
-        """The engine's springs and contacts."""
         if not np.isfinite(angles).all():
             raise DivergedError("the joint angles are not finite")
         self.pose, self.evaluations = pose, self.evaluations + 1
@@ -161,7 +159,6 @@ class Twin:
         return self._moments
 
     def contacts(self) -> Contacts:
-        """Of the last evaluated configuration."""
         return self._contacts
 
     def contact_places(self) -> Floats:
@@ -176,19 +173,15 @@ class Twin:
         return np.asarray(curvature / (1 + self._radius * curvature))
 
     def stiffness(self, angles: Floats) -> Floats:
-        """That of the springs."""
         return self._beam.stiffness(angles)
 
     def elastic_moments(self) -> Floats:
-        """Of the springs."""
         return self._elastic
 
     def joint_positions(self) -> Floats:
-        """By the engine's kinematics."""
         return self._joints
 
     def bead_positions(self, beads: Integers) -> Floats:
-        """By the engine's kinematics."""
         return np.asarray(self._places[beads])
 
     def slide_beads(self, contacts: Contacts) -> bool:
@@ -196,15 +189,12 @@ class Twin:
         return False
 
     def hold_beads(self) -> bool:
-        """They never slide."""
         return False
 
     def slides(self, contacts: Contacts) -> Booleans:
-        """None does."""
         return np.zeros(len(contacts.link), dtype=bool)
 
     def clamp(self) -> clamp.Clamp:
-        """By the engine's own reaction."""
         return self._linkage.clamp()
 
     def discrepancy(self) -> float:
@@ -215,7 +205,6 @@ class Twin:
         return clamp.discrepancy(self.clamp(), required, self.layout.base[0], first)
 
     def extension(self) -> float:
-        """By the engine's kinematics."""
         ends = np.vstack([self._joints, self._places[-1]])
         bent = np.hypot(*np.diff(ends, axis=0).T).sum()
         return float(bent + self.layout.joints[0] - 1 + self.layout.arched)

@@ -16,7 +16,6 @@ def take(values: _Batch, which: Booleans | Integers | slice) -> _Batch:
 
 
 def put(values: tuple[Any, ...], where: Booleans | Integers, new: tuple[Any, ...]) -> None:
-    """Put others in the place of some."""
     for old, value in zip(values, new, strict=True):
         if isinstance(old, tuple):
             put(old, where, value)

@@ -21,7 +21,6 @@ _LEAST = 1 / 64  # of a step whose parts make a miss larger, too
 
 
 def solve(misses: Misses, jacobian: Jacobian, start: Floats) -> tuple[Floats, Floats]:
-    """Zeros next to `start`."""
     z = np.array(start, dtype=float)
     everywhere = np.arange(len(z))
     values = misses(z, everywhere)

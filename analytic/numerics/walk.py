@@ -41,7 +41,6 @@ def first_touch(
 def first_clear(
     gap: Callable[[float], float], begin: float, ends: Iterable[float], within: float
 ) -> float | None:
-    """Where a gap opens first."""
     low = begin
     for end in ends:
         if gap(end) > 0:

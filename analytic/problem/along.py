@@ -104,14 +104,12 @@ class Along:
         return np.asarray(self._coefficients[0][i] + x * value - above)
 
     def times(self, factor: float, stretch: float = 1.0) -> "Along":
-        """The same in other units."""
         return Along(
             tuple(end * stretch for end in self.ends),
             tuple(tuple(c * factor for c in piece) for piece in self.series),
         )
 
     def integral(self) -> "Along":
-        """The integral from the clamp."""
         pieces, reached = list[Chebyshev](), 0.0
         for piece in self._pieces:
             found = piece.integ(lbnd=piece.domain[0], k=reached)
@@ -208,7 +206,6 @@ def sampled(
     """The series of a function, on pieces halved until it is exact; at `breaks` it may be rough."""
 
     def on(begin: float, end: float) -> tuple[Chebyshev, bool]:
-        """A piece, and whether it is exact."""
         values = _values(name, function, _nodes(begin, end))
         if values.min() == values.max():
             return Chebyshev(values[:1], (begin, end)), True

@@ -140,7 +140,6 @@ class Case(AnyCase, Shown):
 
     @property
     def support(self) -> Support:
-        """Clamp, friction and weight."""
         return Support(self.clamp_stiffness, self.friction, self.clamp_angle, self.weight)
 
     @property

@@ -204,7 +204,6 @@ class ClampPath(TurningWay):
 
     @property
     def direction(self) -> Direction:
-        """Where it goes to by and by: the foot, or if that comes back the clamp's angle."""
         gone = self.foot_x[0] - self.foot_x[-1] or self.clamp_angle[-1] - self.clamp_angle[0]
         return "left" if gone >= 0 else "right"
 

@@ -21,7 +21,6 @@ class OfVibrissa:
 
     @property
     def support(self) -> Support:
-        """Clamp, friction and weight."""
         raise NotImplementedError
 
     @property

@@ -14,7 +14,6 @@ LARGEST = 1e150  # its square is a number still, and so is its inverse
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a real, finite number and no boolean."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     try:

@@ -7,5 +7,4 @@ Place = Callable[[int], str]
 
 
 def row_number(row: int) -> str:
-    """Where a row of a table in memory stands."""
     return f"row {row}"

@@ -159,7 +159,6 @@ class Readings(OfVibrissa, SweepTable):
 
     @property
     def support(self) -> Support:
-        """The clamp and the friction, as the provenance has them."""
         return support_of(self.provenance)
 
     @property
@@ -176,7 +175,6 @@ class Readings(OfVibrissa, SweepTable):
 
     @property
     def running(self) -> str:
-        """The column over which the sweep runs."""
         if "travel" in self.table:
             return "travel"
         return "clamp_angle" if "clamp_angle" in self.table else "foot_x"

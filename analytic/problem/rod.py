@@ -101,7 +101,6 @@ class RodProperties:
 
     @cached_property
     def most_curved(self) -> float:
-        """The natural curvature where it is largest, nearly."""
         return float(self.unloaded.curvature(np.linspace(0, 1, _PLACES)).max())
 
     def _is_resolved(self, begin: float, end: float) -> bool:

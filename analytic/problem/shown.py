@@ -53,7 +53,6 @@ class Shown:
 
 
 def new_figure() -> "Figure":
-    """One that a notebook shows by itself."""
     from matplotlib import pyplot as plt  # a third of a second, and most draw nothing
 
     return plt.figure(layout="constrained")

@@ -92,7 +92,6 @@ class SweepTable(Shown):
 
     @property
     def running(self) -> str:
-        """The column over which the sweep runs."""
         raise NotImplementedError
 
     @property
@@ -109,7 +108,6 @@ class SweepTable(Shown):
 
     @property
     def beyond_the_paper(self) -> Mapping[str, Varying]:
-        """What of vibrissa, clamp and contact is not the paper's, by what it is."""
         return {}
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
@@ -142,7 +140,6 @@ class SweepTable(Shown):
         return list(axes)
 
     def _new_axes(self, figure: "Figure | None" = None) -> "list[Axes]":
-        """Axes for what the clamp reads, one above the other."""
         labels = (with_unit(label, self.beam) for label in self.panels)
         return stacked(labels, with_unit(self.running, self.beam), figure)
 
@@ -153,7 +150,6 @@ class SweepTable(Shown):
         return {"source": self.source, "stations": len(self.table), **self._counts()}
 
     def _counts(self) -> dict[str, str]:
-        """How many stations are in which phase, and of which status."""
         return {
             name: ", ".join(
                 f"{word} {n}" for word, n in self.table[name].value_counts(sort=False).items()

@@ -81,7 +81,6 @@ def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
 
 
 def says(column: "pd.Series[Any]", word: str) -> Booleans:
-    """Whether the cells of a column of words are a word."""
     if not isinstance(column.array, pd.arrays.ArrowStringArray):
         return (column == word).to_numpy(dtype=bool)
     cells = pa.array(column.array)

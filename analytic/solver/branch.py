@@ -45,7 +45,6 @@ class Branch:
         return self.samples.foot_x
 
     def events(self) -> dict[str, int | None]:
-        """What happens, and at which point; None where it does not."""
         start, end = phase_limits(self.tangent)
         # The last that is stable in space: the lowest, or what comes before it is passed in a jump.
         before = np.where(self.t >= self.lowest, self.foot_x, np.inf)
@@ -60,7 +59,6 @@ class Branch:
         }
 
     def cells(self, foot_x: Floats) -> Integers:
-        """Cell that holds the state at each foot position on the branch."""
         return cells(self.foot_x, foot_x)
 
 

@@ -127,7 +127,6 @@ def least_rotation(alpha: Floats) -> Floats:
 
 
 def frame(span: Span, alpha: Floats) -> Frame:
-    """The span's end in the world frame."""
     sin, cos = np.sin(alpha), np.cos(alpha)
     return Frame(span.C * sin + span.S * cos, span.C * cos - span.S * sin)
 

@@ -47,7 +47,6 @@ class Grid(NamedTuple):
     t: Floats
 
     def with_points(self, owner: Integers, t: Floats) -> "Grid":
-        """The grid with more points, each once."""
         return _merged(self, (), Grid(owner, t), ())[0]
 
     @property
@@ -214,7 +213,6 @@ def _to_end_of_reach(contours: Contours, grid: Grid) -> tuple[Grid, ContourPoint
 
 
 def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
-    """The points before the first chosen one of each contour."""
     so_far: Integers = np.cumsum(chosen)
     begins = grid.begins
     before = so_far[begins] - chosen[begins]
@@ -269,7 +267,6 @@ def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid
 
 
 def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
-    """The least of all foot positions of a contour up to each one."""
     values = np.where(np.isnan(foot_x), np.inf, foot_x)
     bounds = pairwise([*grid.begins.tolist(), values.size])
     return np.concatenate([np.minimum.accumulate(values[begin:end]) for begin, end in bounds])

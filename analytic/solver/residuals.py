@@ -113,7 +113,6 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
 def _of_two(
     columns: ReadingColumns, two: Booleans, vibrissa: Vibrissa, units: Units
 ) -> tuple[Floats, Floats]:
-    """What the stations with two contacts miss."""
     natural = vibrissa.natural_curvature
 
     def span(

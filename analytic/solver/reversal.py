@@ -150,7 +150,6 @@ def _sliding(case: Case, sense: float) -> Path:
 
 
 def _holds(path: Path, foot_x: Floats) -> Booleans:
-    """Whether a path has a state at foot positions."""
     return np.asarray((foot_x < path.p[0]) & (foot_x >= path.p[path.snap_off]))
 
 

@@ -162,7 +162,6 @@ class DartChain:
         return list(self._world.getLastCollisionResult().getContacts())
 
     def _places(self) -> Floats:
-        """Where joints and tip are."""
         poses = [link.getWorldTransform() for link in self._links]
         tip = poses[-1].multiply([0.0, _LENGTH * float(self.layout.chords[-1]), 0.0])
         ends = [*(pose.translation() for pose in poses), np.ravel(tip)]
@@ -184,12 +183,10 @@ class DartChain:
         )
 
     def keep(self) -> tuple[Floats, Floats, float]:
-        """Angles, their speeds, and where the object is."""
         chain = self._chain
         return chain.getPositions(), chain.getVelocities(), float(self._slide.getPosition(0))
 
     def go_back(self, kept: tuple[Floats, Floats, float]) -> None:
-        """To the same."""
         angles, speeds, place_ = kept
         self._chain.setPositions(angles)
         self._chain.setVelocities(speeds)

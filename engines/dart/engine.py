@@ -28,7 +28,6 @@ class _Dart:
     def sweep(
         self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
     ) -> Readings:
-        """By steps in time."""
         case.require_plain("dart")
         if case.radius == 0:
             raise InputError("beam.radius", 0, "positive for dart", "it cannot collide a line")

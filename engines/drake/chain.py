@@ -99,7 +99,6 @@ class DrakeLinkage:
         return Convex(obstacle.hull(window).T, "object"), RigidTransform()
 
     def attend(self, window: int, beads: frozenset[int]) -> None:
-        """By the shape of the object, and by the way it touches."""
         self._contact.collide(self._root, beads)
         if window == self._window:
             return
@@ -110,7 +109,6 @@ class DrakeLinkage:
         self._seat.SetPoseInParentFrame(self._context, pose)
 
     def place(self, foot_x: float, angles: Floats) -> tuple[Floats, Floats]:
-        """By the poses of the links."""
         plant, context = self._plant, self._context
         self._foot.SetPoseInParentFrame(context, RigidTransform(np.array([foot_x, 0.0, 0.0])))
         self._angles[self._order] = angles
@@ -125,13 +123,11 @@ class DrakeLinkage:
         return joints, self._places
 
     def gap(self, bead: int) -> tuple[Floats, float]:
-        """By Drake's distances."""
         query = self._plant.get_geometry_query_input_port().Eval(self._context)
         outward, distance = self._contact.gap(query, bead, self._places[bead])
         return outward[:2], distance
 
     def moments(self, beads: Integers, forces: Floats) -> tuple[Floats, Floats]:
-        """Drake's springs and contacts."""
         plant, context = self._plant, self._context
         plant.CalcForceElementsContribution(context, self._springs)
         springs = np.array(self._springs.generalized_forces())[self._order]

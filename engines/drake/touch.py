@@ -42,7 +42,6 @@ class Beads:
         self.links, self.carriers, self.places, self.radii = links, carriers, places, radii
 
     def body(self, bead: int) -> RigidBody:
-        """The link of a bead."""
         return self.links[int(self.carriers[bead])]
 
 
@@ -86,7 +85,6 @@ class CompliantContact:
             filters.Apply(allowed)
 
     def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
-        """The obstacle's normal at a bead and how far that is, by Drake's distance of the two."""
         pair = query.ComputeSignedDistancePairClosestPoints(self._beads[bead], self._id)
         outward = np.asarray(pair.nhat_BA_W)  # in whichever order Drake has them
         return outward if pair.id_B == self._id else -outward, float(pair.distance)
@@ -108,7 +106,6 @@ class DistanceContact:
         """The contacts are of watched beads only."""
 
     def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
-        """By Drake's distance of the centre."""
         (found,) = query.ComputeSignedDistanceToPoint(np.append(point, 0.0))
         return np.asarray(found.grad_W), float(found.distance - self._beads.radii[bead])
 

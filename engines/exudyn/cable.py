@@ -96,7 +96,6 @@ class Cable:
         ]
 
     def _add_joints(self, cables: list[int]) -> None:
-        """The point in space, and both joints there."""
         mbs, count = self._system, len(cables)
         self._point = mbs.AddObject(item.ObjectGround(referencePosition=[*self.held.point, 0]))
         self._at_point = mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=self._point))
@@ -152,21 +151,17 @@ class Cable:
             )
 
     def state(self) -> tuple[Hold, list[Floats]]:
-        """How it is held, and its shape."""
         return self.held, [np.array(part) for part in self._system.systemData.GetSystemState()]
 
     def go_back(self, state: tuple[Hold, list[Floats]]) -> None:
-        """Start from there."""
         held, solver = state
         self._system.systemData.SetSystemState(solver, configuration=_START)
         self._hold(held)
 
     def hold_tip(self) -> None:
-        """Be held at the tip."""
         self._hold(self.held._replace(slides=False, arc_length=1.0))
 
     def let_slide(self, arc_length: float, point: Floats) -> None:
-        """Be held by the sliding joint."""
         self._hold(self.held._replace(slides=True, arc_length=arc_length, point=point))
 
     def _hold(self, held: Hold) -> None:

@@ -173,7 +173,6 @@ class CableOnContour:
         return float(tangents[-1] @ self._outward(t)) > _ALONG
 
     def _is_inside(self) -> bool:
-        """Whether a part of the cable is in the object."""
         positions, tangents = self._cable.ends()
         # Middles of the cubic elements, by their ends.
         step = (tangents[:-1] - tangents[1:]) / (8 * (len(positions) - 1))

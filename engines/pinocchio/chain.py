@@ -65,7 +65,6 @@ class PinocchioLinkage:
         self._seat = coal.Transform3s(np.eye(3), np.append(centre, 0.0))
 
     def place(self, foot_x: float, angles: Floats) -> tuple[Floats, Floats]:
-        """By Pinocchio's kinematics."""
         self._angles, self._configuration = angles, np.append(foot_x, angles)
         pin.forwardKinematics(self._model, self._data, self._configuration)
         self._poses = [self._data.oMi[i] for i in range(2, self._model.njoints)]
@@ -76,7 +75,6 @@ class PinocchioLinkage:
         return joints, self._places
 
     def gap(self, bead: int) -> tuple[Floats, float]:
-        """By coal's distances."""
         there = coal.Transform3s(np.eye(3), np.append(self._places[bead], 0.0))
         self._found.clear()
         distance = coal.distance(

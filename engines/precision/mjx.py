@@ -23,7 +23,6 @@ def in_single(states: Sequence[State]) -> list[Evaluated]:
 
 
 def in_double(states: Sequence[State]) -> list[Evaluated]:
-    """In 64 bits."""
     with jax.enable_x64(True):
         return _evaluate(states)
 

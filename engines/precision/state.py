@@ -22,7 +22,6 @@ class State:
 
     @classmethod
     def of(cls, model: BeamModel) -> "State":
-        """Keep what a model is in."""
         return cls(copy(model.model), model.data.qpos.copy(), model.beads)
 
 

@@ -80,7 +80,6 @@ def press(nodes: Floats, length: float, arcs: Arcs, pressed: Floats) -> None:
 
 @njit(cache=True)
 def push(outer: Floats, pressed: Floats) -> None:
-    """Add the forces to those on nodes."""
     for i in range(pressed.shape[1]):
         for depth, place, stiffness, right, up in pressed[:, i].T:
             if depth > 0:

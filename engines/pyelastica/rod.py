@@ -160,11 +160,9 @@ class ElasticaRod:
         )
 
     def keep(self) -> tuple[float, Floats]:
-        """Places and headings; of the foot, too."""
         return self._foot_x, self._unknowns
 
     def go_back(self, kept: tuple[float, Floats]) -> None:
-        """To the same."""
         self._foot_x, self._unknowns = kept
 
 

@@ -102,12 +102,10 @@ class MovingModel(SteppedModel):
 
     @property
     def p(self) -> float:
-        """Where the clamp is on its way."""
         return self._at
 
     @property
     def _pose(self) -> Pose:
-        """Of the clamp, in the state that is reported."""
         return self._poses.at(np.array(self._at))
 
     @property
@@ -157,12 +155,10 @@ class MovingModel(SteppedModel):
         return Contacts.of(self.data, self._surface, self._layout, joints)
 
     def clamp(self) -> Clamp:
-        """The clamp's action on the vibrissa, by MuJoCo's sensors."""
         return by_sensors(self.data, float(self._pose.angle))
 
     @property
     def touches(self) -> bool:
-        """Whether a contact is loaded."""
         if self.data.ncon == 0:
             return False
         if len(self._surface.sides) == 0:

@@ -72,7 +72,6 @@ class SteppedModel(ABC):
         self.data.qfrc_applied[: len(speeds)] = CARRIAGE * MASS * change / self.model.opt.timestep
 
     def _advance(self) -> None:
-        """One step of MuJoCo's."""
         mujoco.mj_step(self.model, self.data)
         if has_diverged(self.data):
             raise DivergedError("the motion does not stay finite")

@@ -52,12 +52,10 @@ class StationMeans:
 
     @property
     def first(self) -> float:
-        """Where the first station's way begins."""
         return self._stations[0] + self._half
 
     @property
     def complete(self) -> bool:
-        """Whether all stations have been passed."""
         return len(self.rows) == len(self._stations)
 
     def crosses(self, before: Step, after: Step) -> bool:

@@ -164,7 +164,6 @@ class Passes(Drive):
         keep: Callable[[Readings], None],
         back: bool = False,
     ) -> Readings:
-        """The readings of the way on, to the left, or of that back."""
         case, motion = self._case, self._motion
         turn_at = self._model.p - motion.speed * motion.ramp / 2 if back else None
         about = {

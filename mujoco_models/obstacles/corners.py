@@ -54,14 +54,12 @@ class Corners:
         return len(self.ends)
 
     def nearest(self, edge: Integers, points: Floats) -> Floats:
-        """Where edges are nearest to points."""
         begin, end = self.ends[edge].transpose(1, 0, 2)
         run = end - begin
         share = ((points - begin) * run).sum(axis=1) / (run**2).sum(axis=1)
         return np.asarray(begin + np.clip(share, 0, 1)[:, None] * run)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add the edges to the world body."""
         inset = np.insert(self.radius * self.outward, 2, 0.0, axis=1)
         for i, (begin, end) in enumerate(self.ends - inset[:, None]):
             spec.worldbody.add_geom(

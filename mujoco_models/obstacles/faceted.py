@@ -55,7 +55,6 @@ class Faceted(Obstacle):
 
     @property
     def lowest(self) -> tuple[float, float]:
-        """Its lowest vertex."""
         x, y = self.vertices[np.argmin(self.vertices[:, 1])]
         return float(x), float(y)
 
@@ -75,7 +74,6 @@ class Faceted(Obstacle):
         return np.asarray(np.maximum(_FLAT, _SINGLE / np.hypot(*np.diff(self.vertices, axis=0).T)))
 
     def vertex(self, slope: Floats) -> Integers:
-        """Number of the vertex at which each slope angle is passed."""
         return np.searchsorted(self.facet_angles, slope)
 
     def support(self, slope: float) -> Floats:

@@ -64,11 +64,9 @@ class FileMesh(Faceted):
         )
 
     def hull(self, window: int) -> Floats:
-        """The mesh's own points."""
         return self._solid.vertices
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """One geom."""
         vertices = self._solid.vertices
         inner = vertices.mean(axis=0)
         planes = ConvexHull(vertices).equations
@@ -126,9 +124,7 @@ class FileMesh(Faceted):
         return slope
 
     def window_of(self, place: float) -> int:
-        """The only one."""
         return 0
 
     def is_inside(self, window: int, places: Floats) -> bool:
-        """Everything is."""
         return True

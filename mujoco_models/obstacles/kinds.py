@@ -10,7 +10,6 @@ from mujoco_models.settings import Settings
 
 
 def place(case: Case, settings: Settings) -> Obstacle:
-    """The obstacle that the settings ask for."""
     obstacle = _made(case, settings)
     if len(obstacle.corners) and case.beam.tip_radius not in (None, case.beam.radius):
         raise InputError(

@@ -63,7 +63,6 @@ class Primitive(Obstacle):
 
     @property
     def label(self) -> str:
-        """What it is."""
         return "MuJoCo's cylinder, with the contour's circle of curvature where the contact is"
 
     @property
@@ -73,7 +72,6 @@ class Primitive(Obstacle):
 
     @property
     def lowest(self) -> tuple[float, float]:
-        """That of the polygon."""
         return self._outline.lowest
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
@@ -82,7 +80,6 @@ class Primitive(Obstacle):
         add_collider(spec, cylinder, pos=[1, 1, 0], size=[1, _HALF_LENGTH, 0])
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
-        """Put the cylinder where the window's circle is."""
         radius = self._circles.radius[window]
         model.geom_size[geom, :2] = radius * np.array([1, _HALF_LENGTH])
         model.geom_rbound[geom] = radius * np.hypot(1, _HALF_LENGTH)
@@ -93,12 +90,10 @@ class Primitive(Obstacle):
         return self._circles.centre[window], float(self._circles.radius[window])
 
     def curvature(self, slope: Floats) -> Floats:
-        """That of the nearest circle."""
         nearest = np.rint(self.place(slope)).astype(int)
         return np.asarray(1 / self._circles.radius[nearest])
 
     def support(self, slope: float) -> Floats:
-        """Of the polygon."""
         return self._outline.support(slope)
 
     def faces(self, slope: Floats) -> bool:
@@ -106,23 +101,19 @@ class Primitive(Obstacle):
         return self._outline.faces(slope)
 
     def near(self, points: Floats, distance: float | Floats) -> Integers:
-        """By the polygon."""
         return self._outline.near(points, distance)
 
     def clearance(self, point: Floats) -> tuple[float, float]:
-        """From the polygon; the place is that of its nearest facet."""
         clearance, facet = self._outline.clearance(point)
         slope = self._outline.facet_angles[int(facet)]
         return clearance, float(self.place(np.array([slope]))[0])
 
     def gap(self, window: int, points: Floats) -> tuple[Floats, Floats]:
-        """From the window's circle."""
         from_centre = points - self._circles.centre[window]
         out = np.hypot(*from_centre.T)
         return out - self._circles.radius[window], from_centre / out[:, None]
 
     def place(self, slope: Floats) -> Floats:
-        """Number of the circle, with a fraction."""
         return np.asarray(np.interp(slope, self._circles.slope, self._number))
 
     @cached_property
@@ -131,7 +122,6 @@ class Primitive(Obstacle):
         return np.arange(len(self._circles.slope), dtype=float)
 
     def window_of(self, place: float) -> int:
-        """The nearest circle."""
         return round(min(max(place, 0), len(self._circles.slope) - 1))
 
     def is_inside(self, window: int, places: Floats) -> bool:

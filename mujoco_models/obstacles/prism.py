@@ -82,7 +82,6 @@ class Prism(Faceted):
 
     @property
     def label(self) -> str:
-        """How fine the polygon is."""
         return (
             f"{len(self.vertices)} contour points, chord error {self.chord_error:.1e} L, "
             f"normal error {self.normal_error:.1e} rad"
@@ -104,12 +103,10 @@ class Prism(Faceted):
 
     @property
     def section(self) -> Floats:
-        """On their grid."""
         return self._gridded
 
     @property
     def windows(self) -> int:  # type: ignore[override]
-        """As many as there are centres."""
         return len(self._centres)
 
     @cached_property
@@ -165,7 +162,6 @@ class Prism(Faceted):
         return distance, normal
 
     def from_tangents(self, points: Floats, slope: Floats) -> Floats:
-        """From the lines of facets."""
         facet = np.minimum(self.vertex(slope), len(self.facet_angles) - 1)
         return self._below(points, facet)[0]
 
@@ -191,11 +187,9 @@ class Prism(Faceted):
         return np.minimum(facet, len(self.facet_angles) - 1)
 
     def place(self, slope: Floats) -> Floats:
-        """The number of the vertex at which the slope angle is passed."""
         return self.vertex(slope).astype(float)
 
     def window_of(self, place: float) -> int:
-        """The window in whose middle a vertex is most."""
         return int((np.abs(self._centres - place) / self._fine_there).argmin())
 
     def is_inside(self, window: int, places: Floats) -> bool:
@@ -221,7 +215,6 @@ class Prism(Faceted):
         add_room(spec, 2 * self._count)
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
-        """Let the mesh be the window's."""
         polygon = self._polygon(int(self._centres[window]))
         write_prism(model, geom, polygon, self._origin(window))
 
@@ -299,7 +292,6 @@ class Prism(Faceted):
 
     @cached_property
     def _count(self) -> int:
-        """Vertices of a window's polygon."""
         widest = int(self._fine[self._centres].max())
         return min(len(self.vertices), len(self._offsets(widest)) + 2) + 1
 

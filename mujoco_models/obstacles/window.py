@@ -82,7 +82,6 @@ def _graph(count: int) -> Integers:
 
 
 def prism_faces(count: int) -> Integers:
-    """The triangles of a prism over a convex polygon."""
     this = np.arange(count)
     after = np.roll(this, -1)
     fan = this[:1].repeat(count - 2), this[1:-1], this[2:]

@@ -36,7 +36,6 @@ class Contours:
 
     @cached_property
     def lowest(self) -> Floats:
-        """Parameters of the lowest points, shape (contours,)."""
         level = np.zeros(1)
         return np.concatenate([contour.parameter(level) for contour in self.contours])
 

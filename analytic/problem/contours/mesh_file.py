@@ -38,7 +38,6 @@ class _Read(NamedTuple):
     size: float
 
     def shown(self, place: Floats) -> str:
-        """A place in the file's own unit."""
         x, y, z = self.middle + self.size * place
         return f"({x:.4g}, {y:.4g}, {z:.4g})"
 
@@ -157,7 +156,6 @@ def _in_ascii(content: bytes, kind: str) -> BytesIO:
 
 
 def hull_of(points: Floats) -> tuple[MeshBody, float]:
-    """The convex hull of points, and its volume."""
     from scipy.spatial import ConvexHull
 
     found = ConvexHull(points)

@@ -53,7 +53,6 @@ def _farthest(points: Floats) -> Integers:
 
 
 def _outside(points: Floats, kept: Floats) -> tuple[Floats, Integers]:
-    """How far points lie outside of the hull of `kept`, and of which of its faces."""
     from scipy.spatial import ConvexHull, KDTree  # slow to load
 
     middle, size = kept.mean(axis=0), np.ptp(kept, axis=0).max()

@@ -40,12 +40,10 @@ class Point(NamedTuple):
 
     @property
     def p(self) -> float:
-        """Parameter of the clamp's way."""
         return float(self.z[_P])
 
     @property
     def rate(self) -> float:
-        """Its derivative by the curve's length."""
         return float(self.direction[_P])
 
 
@@ -59,7 +57,6 @@ class EquilibriumCurve(NamedTuple):
     breaks: Floats
 
     def start(self, t: float, excess: float, p: float) -> Point:
-        """The unloaded vibrissa at first contact."""
         here = self._loaded(np.array([t, 0.0, excess, p]))
         if excess == 0 and here.direction[_W] < 0:
             here = self._loaded(np.array([t, 0.0, INSIDE, p]))

@@ -135,7 +135,6 @@ class _Pull(NamedTuple):
         return self.force + np.hypot(self.normal, self.along) if self.heavy else self.force
 
     def at(self, s: Floats, theta: Floats) -> Floats:
-        """The derivative of the moment at places."""
         beyond = 1 - s
         level = (self.force + beyond * self.normal) * np.cos(theta)
         return np.asarray(level + beyond * self.along * np.sin(theta))

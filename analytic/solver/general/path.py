@@ -93,7 +93,6 @@ class Path(NamedTuple):
         }
 
     def cells(self, p: Floats) -> Integers:
-        """The cell that holds the state at each parameter of the way."""
         return cells(self.p, p)
 
     def share(self, cells: Integers, wanted: Floats, coordinate: int) -> Floats:
@@ -124,14 +123,12 @@ class Path(NamedTuple):
         return z
 
     def length(self, cells: Integers) -> Floats:
-        """The length of cells, as chords."""
         way = self.z[cells + 1] - self.z[cells]
         way /= self.vibrissa.sizes(self.z[cells])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
 
 
 def cells(points: Floats, foot_x: Floats) -> Integers:
-    """The cell between points in sweep order whose end is the first left of each foot position."""
     least = np.minimum.accumulate(points)
     end = np.searchsorted(-least, -foot_x, side="left")
     return np.clip(end, 1, len(points) - 1) - 1

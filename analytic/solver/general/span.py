@@ -47,7 +47,6 @@ class Start(NamedTuple):
 
 
 def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:
-    """March from the contact back to the clamp."""
     chi = np.pi / 4 - theta / 2
     p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
     energy = force * p1**2 + v1**2

@@ -85,12 +85,10 @@ class Vibrissa(NamedTuple):
 
     @property
     def weight(self) -> tuple[float, float]:
-        """Along x and y, by length."""
         return (0.0, 0.0) if self.rod is None else self.rod.weight
 
     @property
     def at_rest(self) -> AtRest:
-        """The vibrissa that touches nothing, under its weight."""
         if self.rod is None or not any(self.weight):
             return AtRest(self.unloaded, 0.0, stands=True)
         return at_rest(self.rod, self.compliance)
@@ -111,7 +109,6 @@ class Vibrissa(NamedTuple):
 
     @property
     def unloaded(self) -> Unloaded:
-        """Its shape and radius without weight."""
         if self.rod is not None:
             return self.rod.unloaded
         radius = float(self.radius)

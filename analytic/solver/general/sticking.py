@@ -75,7 +75,6 @@ def _ended(
 
 
 def between(contour: Contour, vibrissa: Vibrissa, known: Sticking, foot_x: Floats) -> Floats:
-    """The sticking states at given foot positions."""
     guess = np.stack([np.interp(foot_x, known.foot_x, column) for column in known.z.T], axis=1)
     found, missed = _at_foot(contour, vibrissa, known.z[0], foot_x, guess)
     if not (missed <= _BALANCED).all():
