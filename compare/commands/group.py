@@ -26,7 +26,6 @@ class Group(TyperGroup):
     """Commands in named groups; a name that is gone says the new one."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401  # typer's own
-        """The command of that name."""
         if args[0] in _GONE:
             raise InputError(
                 "command", args[0], "one of `vibrissa --help`", f"use {_GONE[args[0]]}"

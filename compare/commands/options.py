@@ -31,12 +31,10 @@ def option(text: str, metavar: str | None = None, default: str | bool = True, *n
 
 
 def flag(name: str, text: str) -> Any:  # noqa: ANN401
-    """An option without a value."""
     return typer.Option(name, help=text, show_default=False)
 
 
 def out_folder(default: str) -> Any:  # noqa: ANN401
-    """The option ``--out`` of a command."""
     return option("Folder for what is written.", "DIR", default, "--out")
 
 
@@ -117,12 +115,10 @@ class Changes:
         return replace(job, engines=engines_beside_exact(self.engines))
 
     def kind(self, job: "AnyJob") -> str:
-        """What kind of a case it is, with these changes."""
         moved = self.motion or self._given("speed", "timestep")
         return MOTION if moved and job.kind == PLANE else job.kind
 
     def made(self, job: "AnyJob") -> "AnyJob":
-        """The job with these changes."""
         from compare.read.job import Job
 
         given = self._given("segments", "beam", "obstacle")
@@ -160,7 +156,6 @@ class Changes:
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
-    """The value of an option that takes a number or the word auto."""
     if text == "auto":
         return "auto"
     try:

@@ -36,7 +36,6 @@ def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
 
 
 def sweep_file(job: AnyJob) -> str:
-    """What the file of a sweep in MuJoCo is called."""
     if job.model is not None:
         return "mujoco-own-model.parquet"
     return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"

@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
-from compare.explain.parts import Shared, by_reading
+from compare.explain.parts import Shared
 
 
 def convergence(shared: Shared, runs: Sequence[Readings]) -> dict[int, dict[str, float]]:
     """Disagreement at each number of segments, which the sources record."""
     segments = [run.provenance.get("settings", {}).get("segments") for run in runs]
     pairs = zip(segments, runs, strict=True)
-    return {int(n): by_reading(shared.off(run)) for n, run in pairs if n is not None}
+    return {int(n): shared.rms(shared.off(run)) for n, run in pairs if n is not None}
 
 
 def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:

@@ -54,7 +54,6 @@ class Split:
 
     @property
     def sentence(self) -> str:
-        """What it says, in a sentence or two."""
         worst = max(self.implementation.values())
         apart = f"{self.subject} and its twin {self.twin} are {worst:.1e} apart"
         if worst <= ROUNDING:
@@ -83,14 +82,12 @@ class Split:
         }
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``engines.json`` holds of it."""
         return {**asdict(self), "blame": self.blame, "sentence": self.sentence}
 
 
 def split(
     exact: Readings, sweeps: Mapping[str, Readings], roles: Mapping[str, str]
 ) -> Split | None:
-    """Split the subject's disagreement."""
     by_role = {roles[name]: name for name in reversed(list(sweeps))}
     if "subject" not in by_role or "twin" not in by_role:
         return None

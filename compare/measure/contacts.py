@@ -10,7 +10,6 @@ _SIGMAS = 4.0  # times the noise; the criterion has errors of its size
 
 
 def contacts_by(sensed: Readings, method: str, level: float) -> pd.DataFrame:
-    """Contact points by a method, from readings with a known level of noise."""
     if method != "decision":
         return reconstruct(sensed, method=method)
     # Where noise makes an impossible force, the square root of the closed form is none.

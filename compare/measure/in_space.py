@@ -30,7 +30,6 @@ class ContactDisagreement:
     distance: Floats  # shape (stations,); of each station of the sweeps; NaN where it is not known
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds."""
         return {name: value for name, value in vars(self).items() if name != "distance"}
 
 

@@ -45,12 +45,10 @@ class UncertaintyTable(Table):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Those of inputs, too."""
         return [*NAMES, *super().keys()]
 
 
 def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Uncertainties | None:
-    """What an ``[uncertainty]`` table says."""
     if not table.model_fields_set:
         return None
     stated = table.__pydantic_extra__

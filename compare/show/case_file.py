@@ -58,7 +58,6 @@ def calibrated_case(
 
 
 def as_toml(tables: Mapping[str, Any]) -> str:
-    """Tables as a TOML file."""
     lines = [f"{_key(k)} = {_value(x)}" for k, x in tables.items() if not isinstance(x, Mapping)]
     for name, table in tables.items():
         if isinstance(table, Mapping):

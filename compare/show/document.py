@@ -25,8 +25,6 @@ class Text:
 
 @dataclass(frozen=True)
 class Items:
-    """Lines of a list."""
-
     said: Sequence[str]
 
 
@@ -80,7 +78,6 @@ class Picture:
 
     @cached_property
     def figures(self) -> "Mapping[str, Figure]":
-        """The figures, by what they show."""
         return {shows: draw() for shows, draw in self.draw.items()}
 
 
@@ -102,7 +99,6 @@ class Film:
 
     @classmethod
     def of(cls, folder: Path) -> "Film | None":
-        """The film of a folder."""
         film = cls(folder / "animation.gif", folder / "still-3.png")
         return film if film.gif.is_file() and film.still.is_file() else None
 
@@ -126,8 +122,6 @@ Block: TypeAlias = Text | Items | Table | Verdict | Picture | Image | Film | Tur
 
 @dataclass(frozen=True)
 class Section:
-    """A part with a title."""
-
     name: str  # by which it is linked to
     title: str
     blocks: Sequence[Block]
@@ -135,8 +129,6 @@ class Section:
 
 @dataclass(frozen=True)
 class Document:
-    """All that is said of a result."""
-
     title: str
     lead: str
     verdict: Verdict
@@ -144,7 +136,6 @@ class Document:
     tiles: Sequence[Tile] = ()
 
     def pictures(self) -> Iterator[Picture]:
-        """All pictures, in order."""
         for section in self.sections:
             for block in section.blocks:
                 within = block.blocks if isinstance(block, Beside) else [block]

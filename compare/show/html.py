@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 
 def html(document: Document) -> str:
-    """The document as a page."""
     made = Table("This report", (), [*colophon().items()], words=(1,))
     return _template().render(document=document, made=made)
 

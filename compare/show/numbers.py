@@ -29,7 +29,6 @@ def percent(x: float) -> str:
 
 
 def words(name: str) -> str:
-    """An identifier as words."""
     return name.replace("_", " ").replace("phase b", "Phase B")
 
 

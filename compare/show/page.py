@@ -46,7 +46,6 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    """A figure as the contents of a PNG file."""
     return _drawn(figure, "png", dpi=dots_per_inch)
 
 

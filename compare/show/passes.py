@@ -73,7 +73,6 @@ def repeats_summary(found: Repeats) -> Iterator[Block]:
 
 
 def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> str:
-    """Whether passes say the same."""
     count = len(found.numbers)
     of = f"chi square {found.chi_square:.3g} of {found.degrees} degrees of freedom"
     said = f"{of}, p = {found.probability:.2g}"

@@ -14,7 +14,6 @@ _PLAIN = {NOISE: "noise of the data", NUMERICS: "the simulation's numerics"}
 
 
 def validation_lines(comparison: Comparison) -> list[str]:
-    """What a validation comes to."""
     found = comparison.validation
     return [] if found is None else [*_lines(found, comparison.reference.beam)]
 

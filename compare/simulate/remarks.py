@@ -75,7 +75,6 @@ _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
-    """What there is to say of a model."""
     said = [
         *_stiffness(found),
         *_stated(found, stated),

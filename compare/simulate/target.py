@@ -32,11 +32,9 @@ class Followed:
 
     @property
     def reached(self) -> bool:
-        """Whether the measured error is at most the target."""
         return self.error <= self.target
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
         return {**asdict(self), "reached": self.reached}
 
 

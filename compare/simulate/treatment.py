@@ -83,7 +83,6 @@ def contacts(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
 
 
 def joints(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
-    """Of all joints."""
     numbers = tuple(i for joint in found.joints for i in joint.numbers)
     return () if found.springs == "flex" else (Edit("joint", tuple(attributes.items()), numbers),)
 
@@ -176,7 +175,6 @@ def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
 
 
 def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
-    """Sensors at the clamp."""
     if not found.body:
         return ()
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)

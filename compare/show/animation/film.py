@@ -26,8 +26,6 @@ _TOP = 0.955  # of the heading
 
 
 class Part(NamedTuple):
-    """A part of the figure that moves."""
-
     moving: list[Artist]  # what is drawn anew at every station
     show: Callable[[int], None]  # moves to a station
 

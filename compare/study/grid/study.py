@@ -97,15 +97,11 @@ def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
 
 
 class PlanarRun(CaseFile):
-    """What a run in the plane needs beside its case."""
-
     noise: SensorNoise = SensorNoise()
     reconstruction: Estimator = Estimator()
 
 
 class SpatialRun(SpaceFile):
-    """What a run in space needs beside its case."""
-
     noise: SensorNoise = SensorNoise()
     reconstruction: Estimator = Estimator()
 
@@ -135,8 +131,6 @@ def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:
 
 
 class StudyTable(Table):
-    """The table ``[study]``."""
-
     name: FileName | None = None
     case: str | None = None
     beams: list[str] | None = None
@@ -166,5 +160,4 @@ class StudyFile(Table):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Those of a run, too."""
         return [*super().keys(), *RUN_TABLES]

@@ -40,7 +40,6 @@ def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
 
 
 def read_plan(folder: Path) -> Plan:
-    """Read what a study is to do."""
     path = folder / PLAN_FILE
     remedy = "start `vibrissa study FILE --out DIR` again: complete runs are kept"
     try:

@@ -58,7 +58,6 @@ class Store:
             self._database.close()
 
     def done(self) -> set[str]:
-        """Find out what need not be done again."""
         return self._done
 
     def add(self, result: Result) -> None:

@@ -67,7 +67,6 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
 
 
 def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document:
-    """All that there is to say of a study."""
     study, questions = found.plan.study, asked(found)
     answers = {question.name: headline(found, question) for question in questions}
     done, planned = len(found.done), len(found.plan)

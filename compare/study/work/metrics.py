@@ -14,7 +14,6 @@ _RECONSTRUCTION = ("reconstruction_rms", "reconstruction_max", "reconstruction_s
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
-    """Find the events of the sweep in closed form."""
     beam, profile, held = physics
     if direction == "right":
         beam, profile, held = beam.mirrored(), profile.mirrored(), held.mirrored()
@@ -24,7 +23,6 @@ def find(physics: Physics, direction: Direction = "left") -> Events:
 def events(
     found: Events, length: float, direction: Direction = "left"
 ) -> dict[str, float | bool | None]:
-    """Say where the events of a sweep are."""
     way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
     places = {n: x if x is not None and x.status == "ok" else None for n, x in places.items()}

@@ -44,7 +44,7 @@ class Result:
 
 
 class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
-    """The run has used up its time."""
+    pass
 
 
 def perform_all(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
