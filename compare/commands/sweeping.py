@@ -28,7 +28,6 @@ AnyReadings: TypeAlias = Readings | SpatialReadings
 
 
 def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
-    """The closed form's sweep, written."""
     with waiting("solving"):
         exact: AnyReadings = job.solve(certified)
         exact.write(folder / "analytic.parquet")

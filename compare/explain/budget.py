@@ -9,7 +9,6 @@ from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import units
 from compare.explain.changes import SHARPER
-from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
     LEFT,
@@ -19,6 +18,7 @@ from compare.explain.parts import (
     Parted,
     Shared,
     common_stations,
+    convergence,
     observed_order,
 )
 from compare.explain.suspects import Suspect, suspects

@@ -19,6 +19,10 @@ from compare.sense.touching import component_scales
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+from collections.abc import Sequence
+
+from analytic import CLAMP_READINGS
+
 SAFETY = 1.25
 """Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
 what the finest grid says, and from what the two finest alone would make of it."""
@@ -199,3 +203,23 @@ def observed_order(coarse: Floats, fine: Floats, nominal: float, least: float) -
     with np.errstate(divide="ignore", invalid="ignore"):
         observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
     return float(np.clip(np.nan_to_num(observed, nan=nominal), least, 2.0))
+
+
+def convergence(shared: Shared, runs: Sequence[Readings]) -> dict[int, dict[str, float]]:
+    """Disagreement at each number of segments, which the sources record."""
+    segments = [run.provenance.get("settings", {}).get("segments") for run in runs]
+    pairs = zip(segments, runs, strict=True)
+    return {int(n): shared.rms(shared.off(run)) for n, run in pairs if n is not None}
+
+
+def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:
+    """Order of each reading's disagreement in 1/N: the slope of a line through the logarithms.
+
+    It falls short of the beam's own order where something else than its segments, as the facets of
+    the obstacle, is what is left at the finest ones.
+    """
+    n = np.log(list(found))
+    return {
+        name: -float(np.polyfit(n, np.log([errors[name] for errors in found.values()]), 1)[0])
+        for name in CLAMP_READINGS
+    }

@@ -26,9 +26,7 @@ class Split:
     twin: str  # names of the engines
     # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     disagreement: dict[str, float]
-    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     implementation: dict[str, float]
-    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     model: dict[str, float]
     # The same of each other model from the exact solution, by engine and reading.
     others: dict[str, dict[str, float]]

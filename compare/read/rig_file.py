@@ -26,8 +26,6 @@ class RigColumn(Table):
 
 
 class RigColumns(Table):
-    """The four sensed quantities, and the time if there is one."""
-
     foot_x: RigColumn
     force_x: RigColumn
     force_y: RigColumn

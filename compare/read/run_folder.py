@@ -29,8 +29,6 @@ _REMEDY = "run it again, or remove its folder"
 
 @dataclass(frozen=True)
 class StoredRun:
-    """A run as its folder has it."""
-
     reference: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
     candidate: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
     # Those that the run was judged by; the defaults if it was not.
@@ -59,7 +57,6 @@ def read_run(folder: Path) -> StoredRun:
 
 
 def _sweeps(folder: Path) -> tuple[Path, Path]:
-    """The files of the two sweeps that a run has left."""
     found = [*folder.glob("mujoco-*.parquet")]
     sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
     if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:

@@ -46,7 +46,6 @@ class RunRecord(BaseModel):
 
     @property
     def profile(self) -> str:
-        """What the object is."""
         return str(self.provenance.get("profile", self.provenance.get("body", "not recorded")))
 
     @property

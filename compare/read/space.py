@@ -81,8 +81,6 @@ class SolidTable(BodyTable):
 
 
 class PathTable(Table):
-    """The way of the foot."""
-
     points: Annotated[list[Point], Field(min_length=2)]
     height: Length = 0.0
     tangent: Axis = (0.0, 1.0, 0.0)

@@ -73,8 +73,6 @@ class WeightTable(Table):
 
 
 class StationsTable(Table):
-    """The positions of the foot."""
-
     stations: int = Sweep().stations
     start: Length | None = None
     stop: Length | None = None

@@ -11,8 +11,7 @@ from compare.read.complaints import shown
 from compare.read.quantities import EXAMPLES, Table
 from compare.read.toml import KeyPlace
 from compare.read.units import DIMENSIONS, in_si
-from compare.validate.inputs import GAINS, INPUTS, nominal
-from compare.validate.stated import NAMES, Input, Uncertainties
+from compare.validate.stated import GAINS, INPUTS, NAMES, Input, Uncertainties, nominal
 
 _TABLE = "uncertainty"
 

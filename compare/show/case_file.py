@@ -10,7 +10,7 @@ from analytic import Calibration
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.quantities import QUANTITIES
 from compare.read.units import in_si
-from compare.validate.inputs import INPUTS
+from compare.validate.stated import INPUTS
 
 CASE_MARK = "# Written by `vibrissa calibrate`"
 """The first line of a case file that is not a user's own."""

@@ -16,8 +16,6 @@ Layout: TypeAlias = Literal["wide", "panels", "three", "middle", "still"]
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph."""
-
     said: str
     strong: str = ""  # what stands before it, in bold
     aside: bool = False  # whether it may be passed over
@@ -57,8 +55,6 @@ def tiles_line(found: Iterable[Tile]) -> Text:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What it comes to."""
-
     good: bool
     claim: str  # in bold
     said: str = ""

@@ -24,7 +24,6 @@ def place(x: float | None) -> str:
 
 
 def percent(x: float) -> str:
-    """A share to a tenth of a hundredth."""
     return f"{100 * x:.1f} %"
 
 

@@ -50,7 +50,6 @@ def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a PNG, whole or not at all."""
     return write_whole(path, png(figure))
 
 

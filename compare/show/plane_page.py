@@ -7,7 +7,7 @@ from functools import partial
 from analytic import CLAMP_READINGS, PHASES, Beam
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
-from compare.explain.convergence import fitted_orders
+from compare.explain.parts import fitted_orders
 from compare.show import comparison_page as common
 from compare.show.budgets import convergence_table
 from compare.show.document import (

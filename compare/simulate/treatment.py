@@ -142,9 +142,10 @@ def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     return Insert(site, own.body), Edit("sensor", (("site", "half-cell"),), numbers)
 
 
-def first_stiffness(found: MeasuredBeam) -> float:
-    """Of the first joint, such that the tip gives way as it is meant to."""
-    return float(joint_arms(found)[0] ** 2 / flexibility(found, 0.0, found.joints[0].cell))
+def first_softened(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """The first joint, such that the tip gives way as it is meant to."""
+    stiffness = joint_arms(found)[0] ** 2 / flexibility(found, 0.0, found.joints[0].cell)
+    return stiffened(found, {0: float(stiffness)})
 
 
 def held(found: MeasuredBeam) -> tuple[Edit, ...]:

@@ -92,7 +92,6 @@ def summary(rows: Sequence[Row]) -> Table:
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """The differences, a line a number."""
     figure = Figure(figsize=(PAGE_WIDTH, 1.2 + _LINE * len(rows)), layout="constrained")
     ax = figure.subplots()
     places = range(len(rows))

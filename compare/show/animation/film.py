@@ -88,7 +88,6 @@ def write_film(
 def _images(
     figure: Figure, parts: Sequence[Part], stations: Iterable[int], dpi: int
 ) -> Iterator[Image.Image]:
-    """A picture of each station."""
     moving = sorted((a for part in parts for a in part.moving), key=lambda a: a.zorder)
     for artist in moving:
         artist.set_animated(True)

@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
 from compare.explain.budget import UNRESOLVED
-from compare.explain.convergence import fitted_orders
-from compare.explain.parts import Parted
+from compare.explain.parts import Parted, fitted_orders
 from compare.show import style
 from compare.show.budgets import headline
 from compare.show.numbers import short

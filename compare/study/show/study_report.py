@@ -22,7 +22,7 @@ from compare.show.document import (
 from compare.show.html import html
 from compare.show.page import png
 from compare.study.keep.database import Warn
-from compare.study.keep.reading import read_plan, read_rows
+from compare.study.keep.store import read_plan, read_rows
 from compare.study.show import pictures, tables
 from compare.study.show.results import Question, StudyResults, asked
 from compare.study.show.sentences import headline, varied
