@@ -16,8 +16,7 @@ from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.simulate.budgets import measure_budget, require_rest
 from compare.simulate.dispatch import simulate
-from compare.simulate.fastest import Fastest, find_fastest
-from compare.simulate.target import Followed, follow_advice
+from compare.simulate.target import Fastest, Followed, find_fastest, follow_advice
 from mujoco_models.motion import Motion
 
 _SWEEPS = "sweeps of the budget"

@@ -144,12 +144,10 @@ class Changes:
         parts = [
             case,
             *(word for word in (self.beam, self.obstacle) if word),
-            *([f"{self.segments}-segments"] if self.segments is not None else []),
-            *([f"{self.stations}-stations"] if self.stations is not None else []),
-            *(["spatial"] if self.spatial else []),
-            *(["in-motion"] if self.motion else []),
-            *([f"speed-{self.speed:g}"] if self.speed is not None else []),
-            *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
+            *(f"{n}-{name}" for name, n in self._given("segments", "stations").items()),
+            *["spatial"] * self.spatial,
+            *["in-motion"] * self.motion,
+            *(f"{name}-{x:g}" for name, x in self._given("speed", "timestep").items()),
             *(one for one in words(self.engines or "") if one not in ("", "exact")),
         ]
         return out or Path("results") / "-".join(parts)

@@ -1,12 +1,12 @@
 """What every budget has: sweeps over the stations that all share, and the parts of a whole."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.shown import Shown
 from analytic.space import SpatialReadings
@@ -19,9 +19,6 @@ from compare.sense.touching import component_scales
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-from collections.abc import Sequence
-
-from analytic import CLAMP_READINGS
 
 SAFETY = 1.25
 """Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
