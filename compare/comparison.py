@@ -12,7 +12,7 @@ import numpy as np
 from analytic import PHASES, Case, InputError, Readings
 from analytic.problem.errors import require
 from analytic.space import SpatialReadings
-from compare.align.travel import check_same_stations
+from compare.align.stations import check_same_stations
 from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import (

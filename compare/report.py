@@ -7,7 +7,6 @@ from pathlib import Path
 
 from analytic.problem.files import write_whole
 from compare.comparison import Comparison, SpatialComparison, compare
-from compare.explain.split_space import Parts
 from compare.read.run_folder import read_run
 from compare.show.document import Film
 from compare.show.html import html
@@ -26,13 +25,10 @@ class Report:
         The page.
     comparison : Comparison or SpatialComparison or None
         What it is about, if that is a run.
-    parts : Parts or None
-        What the disagreement of a run in space is made of, if that was measured.
     """
 
     path: Path
     comparison: Comparison | SpatialComparison | None = None
-    parts: Parts | None = None
 
 
 def write_report(
@@ -76,5 +72,4 @@ def _of_a_run(folder: Path, place: Path) -> Report:
     found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
     if isinstance(found, Comparison):
         found = replace(found, validation=stored.validation)
-    page = write_page(found, place, stored.budget, film, stored.parts, stored.body)
-    return Report(page, found, stored.parts)
+    return Report(write_page(found, place, stored.budget, film, stored.body), found)

@@ -85,7 +85,6 @@ def without_offset(readings: Readings, offset: float) -> Readings:
 
 
 def checked_offset(offset: float) -> float:
-    """An offset that somebody gave."""
     if isinstance(offset, bool | str) or not np.isfinite(offset):
         raise InputError("offset", repr(offset), "'auto' or a finite number", "give a length")
     return float(offset)

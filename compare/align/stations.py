@@ -1,4 +1,4 @@
-"""Two sweeps brought to the same places along their way, phase by phase."""
+"""Two sweeps brought to the same places along their way, phase by phase; in space they are."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,10 +10,11 @@ import pandas as pd
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
+from analytic.space.problem.readings import FOOT
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
-_SAME_POSE = 1e-6  # L, rad
+_SAME_POSE = 1e-6  # L, rad, and of a tangent's components
 _CUBIC = 4  # stations that a cubic spline needs
 _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings out
 
@@ -185,3 +186,23 @@ def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:
     if len(places) < _CUBIC or np.diff(places).min() < _APART * np.ptp(places):
         return make_interp_spline(places, values, k=1, axis=-1)
     return CubicSpline(places, values, axis=-1)
+
+
+def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) -> None:
+    """Refuse sweeps of two vibrissae, of two clamps, or at other stations."""
+    check_same_beam(reference, candidate)
+    if np.abs(reference.clamp_tangent - candidate.clamp_tangent).max() > _SAME_POSE:
+        raise InputError(
+            f"tangent of {candidate.source}", candidate.clamp_tangent.tolist(),
+            f"{reference.clamp_tangent.tolist()}, that of {reference.source}",
+            "compare sweeps of one clamp",
+        )  # fmt: skip
+    feet = reference.values(*FOOT), candidate.values(*FOOT)
+    length = reference.beam.length
+    if feet[0].shape != feet[1].shape or np.abs(feet[0] - feet[1]).max() >= _SAME_POSE * length:
+        raise InputError(
+            f"stations of {candidate.source}",
+            f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}",
+            f"the same foot positions, to {_SAME_POSE:g} L",
+            "sweep both along one [path]",
+        )

@@ -10,15 +10,13 @@ from analytic.problem.errors import require
 from compare.commands import terminal
 from compare.commands.sweeping import AnyReadings
 from compare.explain.budget import Budget
-from compare.explain.split_space import Parts
+from compare.explain.parts import Parted
 from compare.read.job import AnyJob, Job, SpaceJob
 from compare.show.budgets import budget_summary
 from compare.show.document import Text
-from compare.show.report import budget_files
 from compare.simulate.budgets import measure_budget, require_rest
 from compare.simulate.dispatch import simulate
-from compare.simulate.fastest import Fastest, find_fastest
-from compare.simulate.target import Followed, follow_advice
+from compare.simulate.target import Fastest, Followed, find_fastest, follow_advice
 from mujoco_models.motion import Motion
 
 _SWEEPS = "sweeps of the budget"
@@ -29,8 +27,7 @@ class Measured:
     """MuJoCo's sweep, and its budget if that was measured and printed."""
 
     base: AnyReadings
-    budget: Budget | None = None  # what the report shows in the plane; nothing in motion
-    parts: Parts | None = None  # in space
+    budget: Parted | None = None  # what the report shows; nothing in motion
     reached: bool = True  # the target at rest, if there is one
     contents: Mapping[str, Any] = field(default_factory=dict)  # of files, by name
     runs: Mapping[str, Readings] = field(default_factory=dict)  # that are kept
@@ -45,16 +42,16 @@ class Measured:
 
 def measured(job: AnyJob, target: float | None) -> Measured:
     """Measure and print the budget of a job, and what to do for a wanted error."""
-    if isinstance(job, SpaceJob):  # printed with the verdict
+    if isinstance(job, SpaceJob):
         require_rest(job.motion)
         with terminal.progress(_SWEEPS) as advance:
-            parts, swept = measure_budget(job.case, job.settings, advance)
-        return Measured(swept["base"], parts=parts)
+            found, swept = measure_budget(job.case, job.settings, advance)
+        _print(job, *budget_summary(found))
+        return Measured(swept["base"], found)
     return _at_rest(job, target) if job.motion is None else _in_motion(job, job.motion, target)
 
 
 def budget_at_rest(job: Job) -> tuple[Budget, Mapping[str, Readings]]:
-    """The budget of a job at rest in the plane, and its sweeps."""
     with terminal.progress(_SWEEPS) as advance:
         return measure_budget(job.case, job.settings, advance)
 
@@ -66,7 +63,7 @@ def _at_rest(job: Job, target: float | None) -> Measured:
         return Measured(runs["base"], found)
     advice = follow_advice(job.case, found, runs, target)
     terminal.show(*map(Text, _advised(advice)))
-    contents = {"budget.json": budget_files(found, advice.to_dict())["budget.json"]}
+    contents = {"budget.json": {**found.to_dict(), "advice": advice.to_dict()}}
     return Measured(runs["base"], found, reached=advice.reached, contents=contents)
 
 
@@ -90,7 +87,6 @@ def _in_motion(job: Job, motion: Motion, target: float | None) -> Measured:
 
 
 def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: float) -> Fastest:
-    """The fastest motion of a job with a wanted error."""
     if job.model is None and motion.solref is None:
         motion = replace(motion, contact_stiffness=motion.stiffness)
 
@@ -103,7 +99,7 @@ def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: flo
     return find_fastest(job.solve(), runs, move, target)
 
 
-def _print(job: Job, *summary: Any) -> None:  # noqa: ANN401
+def _print(job: AnyJob, *summary: Any) -> None:  # noqa: ANN401
     terminal.show(Text("", strong=f"Budget of {job.case.name}"), *summary)
 
 

@@ -70,7 +70,7 @@ def calibrate(
     from compare.sense.record import without_dropouts
     from compare.show.case_file import CASE_MARK, calibrated_case
     from compare.show.fits import calibration_document, calibration_summary
-    from compare.show.lag import lag_remembered
+    from compare.show.passes import lag_remembered
 
     known = load_job(case).case
     rig = RigFiles(column or (), None, direction, "world")

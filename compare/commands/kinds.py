@@ -63,7 +63,6 @@ def _shown(value: object) -> str:
 
 
 def require_readings(files: Iterable[Path]) -> None:
-    """Refuse files of readings that are not there."""
     for file in files:
         regular_file(file, "readings file", sys.maxsize)
 

@@ -5,16 +5,16 @@ import sys
 from collections.abc import Callable
 from io import TextIOWrapper
 from traceback import format_exc
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError, near
 from compare.commands.calibrate import calibrate
 from compare.commands.compare import compare
 from compare.commands.export import export
-from compare.commands.group import Group
 from compare.commands.inspect import inspect
 from compare.commands.listing import list_what_there_is
 from compare.commands.output import ended_by_signals, warn
@@ -24,6 +24,44 @@ from compare.commands.rig import rig
 from compare.commands.run import run, view
 from compare.commands.study import study
 from compare.commands.verify import verify
+
+_GONE = {
+    "analytic": "vibrissa run CASE --engine exact",
+    "simulate": "vibrissa run CASE --sweep-only",
+    "space": "vibrissa run CASE, for readings vibrissa reconstruct FILE --beam CASE",
+    "animate": "vibrissa run CASE --film",
+    "budget": "vibrissa run CASE --budget",
+    "side-by-side": "vibrissa compare REFERENCE CANDIDATE...",
+    "methods": "vibrissa study methods-noise, or python -m docs.figures.methods CASE DIR",
+    "float32": "vibrissa inspect CASE --float32",
+    "study-report": "vibrissa report DIR",
+    "findings": "vibrissa report DIR",
+    "cases": "vibrissa list cases",
+    "engines": "vibrissa list engines",
+}
+
+
+class Group(TyperGroup):
+    """Commands in named groups; a name that is gone says the new one."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401  # typer's own
+        if args[0] in _GONE:
+            raise InputError(
+                "command", args[0], "one of `vibrissa --help`", f"use {_GONE[args[0]]}"
+            )
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401
+        """Write each group with its commands, in the order in which they were added."""
+        panels: dict[str, list[tuple[str, str]]] = {}
+        width = formatter.width - 6 - max(map(len, self.commands))
+        for name, command in self.commands.items():
+            panel: str = getattr(command, "rich_help_panel", "")
+            panels.setdefault(panel, []).append((name, command.get_short_help_str(width)))
+        for panel, rows in panels.items():
+            with formatter.section(panel):
+                formatter.write_dl(rows, col_max=width)
+
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error

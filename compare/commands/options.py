@@ -31,12 +31,10 @@ def option(text: str, metavar: str | None = None, default: str | bool = True, *n
 
 
 def flag(name: str, text: str) -> Any:  # noqa: ANN401
-    """An option without a value."""
     return typer.Option(name, help=text, show_default=False)
 
 
 def out_folder(default: str) -> Any:  # noqa: ANN401
-    """The option ``--out`` of a command."""
     return option("Folder for what is written.", "DIR", default, "--out")
 
 
@@ -117,12 +115,10 @@ class Changes:
         return replace(job, engines=engines_beside_exact(self.engines))
 
     def kind(self, job: "AnyJob") -> str:
-        """What kind of a case it is, with these changes."""
         moved = self.motion or self._given("speed", "timestep")
         return MOTION if moved and job.kind == PLANE else job.kind
 
     def made(self, job: "AnyJob") -> "AnyJob":
-        """The job with these changes."""
         from compare.read.job import Job
 
         given = self._given("segments", "beam", "obstacle")
@@ -148,19 +144,16 @@ class Changes:
         parts = [
             case,
             *(word for word in (self.beam, self.obstacle) if word),
-            *([f"{self.segments}-segments"] if self.segments is not None else []),
-            *([f"{self.stations}-stations"] if self.stations is not None else []),
-            *(["spatial"] if self.spatial else []),
-            *(["in-motion"] if self.motion else []),
-            *([f"speed-{self.speed:g}"] if self.speed is not None else []),
-            *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
+            *(f"{n}-{name}" for name, n in self._given("segments", "stations").items()),
+            *["spatial"] * self.spatial,
+            *["in-motion"] * self.motion,
+            *(f"{name}-{x:g}" for name, x in self._given("speed", "timestep").items()),
             *(one for one in words(self.engines or "") if one not in ("", "exact")),
         ]
         return out or Path("results") / "-".join(parts)
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
-    """The value of an option that takes a number or the word auto."""
     if text == "auto":
         return "auto"
     try:

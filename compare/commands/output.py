@@ -21,7 +21,7 @@ _OWN_PAGE = "This report"  # the caption of the last table of each page
 
 
 class Ended(KeyboardInterrupt):
-    """A signal asked the command to end."""
+    pass
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from compare.commands.output import waiting
 from compare.commands.sweeping import AnyReadings, printed, simulated, solved, sweep_file
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
-from compare.explain.split_space import Parts
+from compare.explain.parts import Parted
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
 from compare.read.runs import EngineOutcome
@@ -74,11 +74,10 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
     comparison = compare(exact, candidate, job.tolerances, frame=asked.frame)
     if isinstance(comparison, Comparison) and isinstance(job, Job) and job.uncertainties:
         with waiting("validating"):
-            comparison = comparison.validated(
-                job.case, job.uncertainties, "candidate", split.budget
-            )
+            numerics = split.budget if isinstance(split.budget, Budget) else None
+            comparison = comparison.validated(job.case, job.uncertainties, "candidate", numerics)
     film = _filmed(comparison, folder, job.body, asked.frames)
-    written = reported(comparison, folder, split.budget, split.parts, film, job.body)
+    written = reported(comparison, folder, split.budget, film, job.body)
     split.write(folder)
     possible = job.kind == PLANE or printed(job, candidate, folder)
     if isinstance(job, Job) and job.model is not None:
@@ -117,24 +116,21 @@ def _filmed(
 def reported(
     comparison: AnyComparison,
     folder: Path,
-    budget: Budget | None = None,
-    parts: Parts | None = None,
+    budget: Parted | None = None,
     film: Film | None = None,
     body: "Body | None" = None,
 ) -> Path:
-    """Write the report, and print the verdict."""
     with waiting("drawing"):
-        written = write_report(comparison, folder, budget, film, parts, body)
-    print_comparison(comparison, parts)
+        written = write_report(comparison, folder, budget, film, body)
+    print_comparison(comparison)
     return written
 
 
-def print_comparison(comparison: AnyComparison, parts: Parts | None) -> None:
-    """Print the verdict, and what it rests on."""
+def print_comparison(comparison: AnyComparison) -> None:
     if isinstance(comparison, Comparison):
         terminal.show(*plane_summary(comparison))
     else:
-        terminal.show(*spatial_summary(comparison, parts))
+        terminal.show(*spatial_summary(comparison))
 
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:

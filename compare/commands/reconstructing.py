@@ -36,8 +36,8 @@ from compare.sense.record import without_dropouts
 from compare.show.figures.geometry import reconstruction
 from compare.show.figures.space import sweep_in_space
 from compare.show.fits import band_document, band_summary, object_document, object_summary
-from compare.show.lag import lag_remembered
 from compare.show.numbers import quantity
+from compare.show.passes import lag_remembered
 from compare.show.scene import SweepScene, solid_ply
 
 CONVEX = "convex"

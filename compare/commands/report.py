@@ -35,6 +35,6 @@ def report(
     with page_folder(out or folder), waiting("reading"):
         found = write_report(folder, out, warn)
     if found.comparison is not None:
-        print_comparison(found.comparison, found.parts)
+        print_comparison(found.comparison)
     terminal.print_report(found.path)
     return AGREES if found.comparison is None or found.comparison.agrees else DISAGREES

@@ -32,8 +32,7 @@ def rig(
     from compare.read.passes import look_at_passes, swept_alike, usable
     from compare.read.rig_file import read_rig
     from compare.show.figures.readings import pass_picture, passes_picture
-    from compare.show.lag import lag_summary, with_lag
-    from compare.show.passes import passes_document, passes_summary
+    from compare.show.passes import lag_summary, passes_document, passes_summary, with_lag
 
     described = read_rig(rig)
     passes = look_at_passes(files, described)

@@ -54,7 +54,7 @@ def study(
     from compare.commands.terminal import print_line, progress
 
     if dry_run:
-        from compare.study.work.estimate import estimate
+        from compare.study.work.execute import estimate
 
         print_line(estimate(plan, cores))
         return AGREES

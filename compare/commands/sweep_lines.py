@@ -107,7 +107,6 @@ def note_rows(readings: Readings) -> None:
 
 
 def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:
-    """Print what a reconstruction found, in a line."""
     counts = found["phase"].value_counts()
     touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
     words = [

@@ -28,7 +28,6 @@ AnyReadings: TypeAlias = Readings | SpatialReadings
 
 
 def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
-    """The closed form's sweep, written."""
     with waiting("solving"):
         exact: AnyReadings = job.solve(certified)
         exact.write(folder / "analytic.parquet")
@@ -36,7 +35,6 @@ def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
 
 
 def sweep_file(job: AnyJob) -> str:
-    """What the file of a sweep in MuJoCo is called."""
     if job.model is not None:
         return "mujoco-own-model.parquet"
     return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"

@@ -37,12 +37,10 @@ def print_line(text: str) -> None:
 
 
 def print_written(path: Path) -> None:
-    """Print which file there is now."""
     print_line(f"wrote {path}")
 
 
 def print_report(path: Path, more: str = "") -> None:
-    """Print where the report is, and what to do next."""
     print_written(path)
     print_line(f"Next: open it in a browser{more}.")
 

@@ -9,15 +9,16 @@ from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import units
 from compare.explain.changes import SHARPER
-from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
+    LEFT,
     SAFETY,
+    SMALL,
     Account,
     Parted,
     Shared,
-    by_reading,
     common_stations,
+    convergence,
     observed_order,
 )
 from compare.explain.suspects import Suspect, suspects
@@ -29,15 +30,12 @@ REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
 UNRESOLVED = 1e-5
 """What no budget resolves, of a reading's largest magnitude."""
-SMALL = 5e-5
-"""What counts as small in any case."""
 _LEAST_ORDER = 1.0  # of a naive clamp; two of one at mid-cell
 _SEEN = 0.1  # from a whole number, as an order that is seen
 # Two combinations of the three sweeps hold errors of one size, each over ten swings and more: for
 # 95 % of such pairs their rms differ by less (F(10, 10) = 3.0).
 _COVERS = 1.7
-_LEFT, _UNSURE = 0.1, 1 / 3
-"""What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
+_UNSURE = 1 / 3  # how uncertain, of a disagreement that counts as explained, what is left may be
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,9 +54,6 @@ class Budget(Parted):
     # What the closed form says of two parts, with no simulator in it, as root mean square by
     # reading: ``facets``, of a contact that is hard, and ``softness``.
     checks: dict[str, dict[str, float]]
-    # Whether it lies within an uncertainty that is not small: then the budget neither closes nor
-    # shows that something is missing.
-    undecided: bool = False
 
 
 def budget(
@@ -96,7 +91,7 @@ def budget(
     unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(account.total)
     within = bool((left <= unresolved).all())
     resolved = bool(
-        (left <= np.hypot(SMALL, _LEFT * whole)).all()
+        (left <= np.hypot(SMALL, LEFT * whole)).all()
         and (unsure <= np.hypot(SMALL, _UNSURE * whole)).all()
     )
     phase = exact.table["phase"].to_numpy()[kept]
@@ -121,7 +116,7 @@ def budget(
         },
         suspects=suspects(rest, signatures, float(np.linalg.norm(unresolved))),
         convergence=convergence(shared, [runs[name] for name in REFINED]),
-        checks={name: by_reading(check) for name, check in checks.items()},
+        checks={name: shared.rms(check) for name, check in checks.items()},
         undecided=within and not resolved,
     )
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import Readings
-from compare.explain.budget import SMALL
 from compare.explain.parts import SAFETY, Account, Parted, Shared, observed_order
 from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
@@ -19,7 +18,6 @@ THREE_SPEEDS = ("quarter", "half", "base", "double", "fourfold")
 _LEAST_ORDER = 0.5  # in the speed: of the dampers' moment one, of inertia two, of bounces less
 _SLOW = 0.02  # L/T1; a quarter of it takes minutes, and says no more of the limit
 _STIFFER = 4  # times the contact stiffness, which half a time step stands as well
-_LEFT = 0.1  # of the disagreement; what may stay unexplained
 
 
 @dataclass(frozen=True, repr=False)
@@ -111,14 +109,13 @@ def motion_budget(
         account.add("beam", shared.off(runs["beam"]))
     at_rest = shared.off(runs["rest"])
     account.add("at rest", at_rest, rms(at_rest) if of_our_chain else 0.0)
-    left, unsure = account.settle()
+    account.settle()
     if "undamped" in run:  # what is rate and what damping does not matter to what is left
         account.add("rate", rate - 2 * damped, np.hypot(slowest, rms(damped)))
         account.add("damping", 2 * damped, rms(damped))
-    allowed = np.hypot(SMALL, np.maximum(unsure, _LEFT * rms(account.total)))
     return MotionBudget(
         **account.common(),
         order=order,
-        closes=bool((left <= allowed).all()),
+        closes=account.closes(),
         blame=account.blame(sure=True),
     )

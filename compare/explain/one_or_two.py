@@ -43,7 +43,6 @@ class Weigh:
         return float(np.sqrt(self.beyond(one) / self.all))
 
     def convinces(self, one: Explanation) -> bool:
-        """Whether it explains nearly all."""
         return self.all - one.left >= CONVINCING * (self.all - self.noise)
 
     def alike(self, best: Explanation, other: Explanation) -> bool:

@@ -1,7 +1,7 @@
 """What every budget has: sweeps over the stations that all share, and the parts of a whole."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -9,17 +9,24 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.shown import Shown
+from analytic.space import SpatialReadings
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off, rms
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
+from compare.sense.touching import component_scales
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+
 SAFETY = 1.25
 """Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
 what the finest grid says, and from what the two finest alone would make of it."""
+SMALL = 5e-5
+"""What counts as small in any case."""
+LEFT = 0.1
+"""What may stay unexplained of a disagreement that counts as explained."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +50,9 @@ class Parted(Shown):
     closes: bool
     blame: str  # the part that dominates
     stations: int  # compared stations
+    # Whether it lies within an uncertainty that is not small: then the budget neither closes nor
+    # shows that something is missing.
+    undecided: bool = field(default=False, kw_only=True)
 
     @property
     def left(self) -> Part:
@@ -61,24 +71,23 @@ class Parted(Shown):
 
     def _draw(self, figure: "Figure") -> None:
         ax, names = figure.subplots(), [*self.parts][::-1]
-        rows, wide = np.arange(len(names)), 0.8 / len(CLAMP_READINGS)
-        for i, reading in enumerate(CLAMP_READINGS):
+        rows, wide = np.arange(len(names)), 0.8 / len(self.disagreement)
+        for i, reading in enumerate(self.disagreement):
             found = [self.parts[name][reading] for name in names]
             sizes, unsure = zip(*((one.rms, one.uncertainty) for one in found), strict=True)
             ax.barh(rows - i * wide, sizes, wide, xerr=unsure, label=reading)
-        ax.set_yticks(rows - wide, names)
+        ax.set_yticks(rows - wide * (len(self.disagreement) - 1) / 2, names)
         ax.set(xscale="log", xlabel="rms / largest magnitude")
         ax.legend(fontsize="small")
 
     def to_dict(self) -> dict[str, Any]:
-        """What the budget's JSON file holds."""
         return asdict(self)
 
 
 class Shared:
     """The stations that the sweeps of a budget share, seen from the exact one."""
 
-    def __init__(self, exact: Readings, kept: Booleans) -> None:
+    def __init__(self, exact: Readings | SpatialReadings, kept: Booleans) -> None:
         if not kept.any():
             raise InputError(
                 "stations common to all sweeps of the budget",
@@ -87,7 +96,11 @@ class Shared:
                 "see their status: a sweep that chatters has none",
             )
         self.kept = kept  # shape (stations of the sweep,)
-        self._scales = scales(exact)
+        self._scales: Mapping[str, float]
+        if isinstance(exact, SpatialReadings):
+            self._scales = component_scales(exact)
+        else:
+            self._scales = scales(exact)
         self.exact = self.signal(exact)
 
     @classmethod
@@ -95,32 +108,32 @@ class Shared:
         """Those in contact and trusted in all of the sweeps."""
         return cls(exact, common_stations(exact, runs))
 
-    def signal(self, readings: Readings) -> Floats:
-        """The clamp readings there, over their largest magnitudes, shape (3, stations)."""
-        return np.stack(
-            [readings.values(name)[self.kept] / size for name, size in self._scales.items()]
-        )
+    def signal(self, readings: Readings | SpatialReadings) -> Floats:
+        """The clamp readings there, over their largest magnitudes, shape (readings, stations)."""
+        sizes = self._scales.items()
+        return np.stack([readings.values(name)[self.kept] / (size or 1.0) for name, size in sizes])
 
-    def off(self, readings: Readings) -> Floats:
-        """What they are off by."""
+    def off(self, readings: Readings | SpatialReadings) -> Floats:
         return self.signal(readings) - self.exact
+
+    def rms(self, signals: Floats) -> dict[str, float]:
+        return dict(zip(self._scales, rms(signals).tolist(), strict=True))
 
 
 class Account:
     """The disagreement of ``runs["base"]``, and the terms that it is taken apart into.
 
-    A term is what a part does at every station, shape (3, stations), and how uncertain its root
-    mean square is, (3,).
+    A term is what a part does at every station, shape (readings, stations), and how uncertain its
+    root mean square is, (readings,).
     """
 
-    def __init__(self, shared: Shared, runs: Mapping[str, Readings]) -> None:
+    def __init__(self, shared: Shared, runs: Mapping[str, Readings | SpatialReadings]) -> None:
         self.shared = shared
         self.run = {name: shared.signal(readings) for name, readings in runs.items()}
         self.total = shared.off(runs["base"])
         self.terms: dict[str, tuple[Floats, Floats]] = {}
 
     def add(self, name: str, signal: Floats, uncertainty: Floats | float = 0.0) -> None:
-        """A part, known to so much."""
         self.terms[name] = signal, np.broadcast_to(uncertainty, len(signal))
 
     def add_uncertain(self, name: str, signal: Floats) -> None:
@@ -130,7 +143,7 @@ class Account:
     def add_extrapolated(self, name: str, more: Floats, less: Floats, factor: float) -> None:
         """A part that falls in proportion, from two sweeps of which one has less by a factor."""
         signal = (more - less) * factor / (factor - 1)
-        self.add(name, signal, SAFETY * rms(signal) / (factor - 1))
+        self.add(name, signal, SAFETY * rms(signal) / abs(factor - 1))
 
     def settle(self) -> tuple[Floats, Floats]:
         """The root mean square of what the parts leave, and how uncertain that is: as all parts."""
@@ -138,6 +151,12 @@ class Account:
         rest = self.total - np.sum(signals, axis=0)
         self.add("unexplained", rest, np.sqrt(np.sum(np.square(uncertainties), axis=0)))
         return rms(rest), self.terms["unexplained"][1]
+
+    def closes(self) -> bool:
+        """Whether what the parts leave is within its uncertainty, or small."""
+        rest, unsure = self.terms["unexplained"]
+        allowed = np.hypot(SMALL, np.maximum(unsure, LEFT * rms(self.total)))
+        return bool((rms(rest) <= allowed).all())
 
     def blame(self, sure: bool = False) -> str:
         """The part that dominates, or of which that much is sure."""
@@ -149,17 +168,13 @@ class Account:
 
     def common(self) -> dict[str, Any]:
         """What every budget has of it."""
+        whole = self.shared.rms(self.total)
         return {
             "parts": {
-                name: {
-                    reading: Part(*sizes)
-                    for reading, *sizes in zip(
-                        CLAMP_READINGS, rms(signal).tolist(), unsure.tolist(), strict=True
-                    )
-                }
-                for name, (signal, unsure) in self.terms.items()
+                name: dict(zip(whole, map(Part, rms(x).tolist(), unsure.tolist()), strict=True))
+                for name, (x, unsure) in self.terms.items()
             },
-            "disagreement": by_reading(self.total),
+            "disagreement": whole,
             "stations": int(self.shared.kept.sum()),
         }
 
@@ -187,6 +202,21 @@ def observed_order(coarse: Floats, fine: Floats, nominal: float, least: float) -
     return float(np.clip(np.nan_to_num(observed, nan=nominal), least, 2.0))
 
 
-def by_reading(signals: Floats) -> dict[str, float]:
-    """The root mean square of each reading."""
-    return dict(zip(CLAMP_READINGS, rms(signals).tolist(), strict=True))
+def convergence(shared: Shared, runs: Sequence[Readings]) -> dict[int, dict[str, float]]:
+    """Disagreement at each number of segments, which the sources record."""
+    segments = [run.provenance.get("settings", {}).get("segments") for run in runs]
+    pairs = zip(segments, runs, strict=True)
+    return {int(n): shared.rms(shared.off(run)) for n, run in pairs if n is not None}
+
+
+def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:
+    """Order of each reading's disagreement in 1/N: the slope of a line through the logarithms.
+
+    It falls short of the beam's own order where something else than its segments, as the facets of
+    the obstacle, is what is left at the finest ones.
+    """
+    n = np.log(list(found))
+    return {
+        name: -float(np.polyfit(n, np.log([errors[name] for errors in found.values()]), 1)[0])
+        for name in CLAMP_READINGS
+    }

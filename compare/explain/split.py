@@ -26,9 +26,7 @@ class Split:
     twin: str  # names of the engines
     # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     disagreement: dict[str, float]
-    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     implementation: dict[str, float]
-    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     model: dict[str, float]
     # The same of each other model from the exact solution, by engine and reading.
     others: dict[str, dict[str, float]]
@@ -54,7 +52,6 @@ class Split:
 
     @property
     def sentence(self) -> str:
-        """What it says, in a sentence or two."""
         worst = max(self.implementation.values())
         apart = f"{self.subject} and its twin {self.twin} are {worst:.1e} apart"
         if worst <= ROUNDING:
@@ -83,14 +80,12 @@ class Split:
         }
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``engines.json`` holds of it."""
         return {**asdict(self), "blame": self.blame, "sentence": self.sentence}
 
 
 def split(
     exact: Readings, sweeps: Mapping[str, Readings], roles: Mapping[str, str]
 ) -> Split | None:
-    """Split the subject's disagreement."""
     by_role = {roles[name]: name for name in reversed(list(sweeps))}
     if "subject" not in by_role or "twin" not in by_role:
         return None

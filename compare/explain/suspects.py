@@ -34,7 +34,6 @@ class Suspect:
 
     @property
     def size(self) -> str:
-        """By how much it differs, as text."""
         if self.name in _UNITS:
             return f"{self.change:+.2g}{_UNITS[self.name]}"
         return f"{self.change:+.2%}"

@@ -81,5 +81,4 @@ def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius
 
 
 def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
-    """What a vibrissa does that is stretched."""
     return np.asarray(signatures["length"] * extension / STEP)

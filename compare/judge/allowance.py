@@ -41,8 +41,6 @@ class Allowance:
 
 @dataclass(frozen=True)
 class NoiseAllowance(Allowance):
-    """What it adds in the plane."""
-
     level: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CLAMP_READINGS, 0.0))
     # How far noise may move each transition that is located from the clamp [length].
     transitions: Mapping[str, float] = field(default_factory=dict)
@@ -52,8 +50,6 @@ class NoiseAllowance(Allowance):
 
 @dataclass(frozen=True)
 class SpatialAllowance(Allowance):
-    """What it adds in space."""
-
     level: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(COMPONENTS, 0.0))
     # The rms of contact points that noise alone moves, in all but one of 400 cases [L].
     contact: float = 0.0

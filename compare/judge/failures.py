@@ -34,13 +34,11 @@ class Failure:
         return f"{self.name} ({self.found}; {self.allowed})"
 
     def __str__(self) -> str:
-        """The whole sentence."""
         why = f" ({self.reason})" if self.reason else ""
         return f"{self.name}: {self.found}; {self.allowed}{why}"
 
 
 def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
-    """Every limit that is exceeded in the plane."""
     _, unit = found.reference.running_unit
     yield from _order(found)
     yield from _contact(found)
@@ -63,7 +61,6 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
 def failures_in_space(
     found: SpatialMeasurement, limits: SpatialTolerances, noise: SpatialAllowance
 ) -> Iterator[Failure]:
-    """Every limit that is exceeded in space."""
     asked = limits.limits()
     if not found.compared.any():
         counts = [

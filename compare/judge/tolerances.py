@@ -313,7 +313,6 @@ def is_smooth_model(readings: "Readings") -> bool:
 
 
 def as_limit(name: str, value: float) -> Limit:
-    """A limit of that name, checked."""
     if isinstance(value, Limit):
         return value
     return Limit(within(f"tolerances.{name}", value, 0.0))

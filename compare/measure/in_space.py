@@ -11,10 +11,8 @@ from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components
-from compare.align.travel import travel_of
 from compare.measure.disagreement import Disagreement, SweepPair, disagreement, rms
-from compare.sense.spatial_events import paired_events
-from compare.sense.touching import TouchingStations, touching
+from compare.sense.touching import TouchingStations, paired_events, touching
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +28,6 @@ class ContactDisagreement:
     distance: Floats  # shape (stations,); of each station of the sweeps; NaN where it is not known
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds."""
         return {name: value for name, value in vars(self).items() if name != "distance"}
 
 
@@ -38,40 +35,18 @@ class ContactDisagreement:
 class SpatialMeasurement(SweepPair[SpatialReadings]):
     """What two sweeps in space differ by, before anyone judges it.
 
-    Attributes
-    ----------
-    reference, candidate : SpatialReadings
-        The two.
-    frame : {"world", "clamp"}
-        Of the components.
-    travel : array, shape (stations,)
-        Distance of the foot along its path [length].
-    compared : array of bool, shape (stations,)
-        Where both touch and are trusted.
-    disagreement : dict of Disagreement
-        By component, ``"force_x"`` to ``"moment_z"``, relative to the largest of its kind, over
-        `travel`.
-    contact : ContactDisagreement
-        Between the contact points.
-    phase_agreement : float or None
-        Fraction of the compared stations that are in one phase; None where a source records none.
-    events : dict of Occurrence
-        Travel of the foot to each touch, slip-off and release, in both sweeps [length].
-    statuses : dict of dict
-        How many stations have which status, of the ``"reference"`` and of the ``"candidate"``.
-    untrusted : int
-        Stations of the candidate without readings where the reference has them.
-    touching : TouchingStations
-        Stations that touch.
+    Components are ``"force_x"`` to ``"moment_z"``, each relative to the largest of its kind. Events
+    are the travel of the foot to each touch, slip-off and release [length].
     """
 
-    frame: Frame
-    travel: Floats
-    compared: Booleans
+    frame: Frame  # of the components
+    travel: Floats  # shape (stations,); of the foot along its path [length]
+    compared: Booleans  # shape (stations,); where both touch and are trusted
     contact: ContactDisagreement
+    # Fraction of the compared stations that are in one phase; None where a source records none.
     phase_agreement: float | None
-    statuses: dict[str, dict[str, int]]
-    untrusted: int
+    statuses: dict[str, dict[str, int]]  # how many stations of either sweep have which status
+    untrusted: int  # stations of the candidate without readings where the reference has them
     touching: TouchingStations
 
 
@@ -82,7 +57,7 @@ def measure_in_space(
     frame: Frame = "world",
 ) -> SpatialMeasurement:
     """Measure how far a candidate is off at the same stations, by the noise that is stated."""
-    on, travel = touching(reference, candidate, stated), travel_of(reference)
+    on, travel = touching(reference, candidate, stated), reference.running_values
     compared = on.reference & on.candidate
     phases = _phases(reference), _phases(candidate)
     same = None

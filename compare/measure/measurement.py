@@ -31,35 +31,16 @@ _SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more
 class Measurement(SweepPair[Readings]):
     """What two sweeps differ by, before anyone judges it.
 
-    Attributes
-    ----------
-    reference, candidate : Readings
-        The sweeps; the candidate's rows in the order of the motion, its ``foot_x`` without the
-        offset.
-    alignment : Alignment
-        The compared stations, and why the others are not.
-    disagreement : dict of Disagreement
-        By clamp reading.
-    events : dict of Occurrence
-        ``first_contact``, ``phase_b_start``, ``phase_b_end``, ``snap_off``.
-    judged : dict of Classification
-        The phases that the clamp readings show, of ``"reference"`` and ``"candidate"``.
-    confusion : dict of pandas.DataFrame
-        Those against the contact truth, where the source recorded it.
-    offset : Offset
-        What was taken from the candidate's ``foot_x`` before anything else.
-    records : dict of Record
-        Defects of the records, of ``"reference"`` and ``"candidate"``.
-    order : RowOrder
-        How the candidate's rows follow the motion.
+    The candidate's rows are in the order of the motion, its ``foot_x`` without the offset. Events
+    are ``first_contact``, ``phase_b_start``, ``phase_b_end`` and ``snap_off``.
     """
 
-    alignment: Alignment
-    judged: dict[str, Classification]
-    confusion: dict[str, pd.DataFrame]
-    offset: Offset
-    records: dict[str, Record]
-    order: RowOrder
+    alignment: Alignment  # the compared stations, and why the others are not
+    judged: dict[str, Classification]  # the phases that the clamp readings show, of either sweep
+    confusion: dict[str, pd.DataFrame]  # those against the contact truth, where it is recorded
+    offset: Offset  # what was taken from the candidate's foot_x before anything else
+    records: dict[str, Record]  # defects of either sweep's record
+    order: RowOrder  # how the candidate's rows follow the motion
 
     @property
     def transitions(self) -> dict[str, Occurrence]:

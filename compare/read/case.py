@@ -73,7 +73,6 @@ def load_job(name_or_path: str | Path) -> Job:
 
 
 def load_space_job(path: str | Path) -> SpaceJob:
-    """The case in space from a TOML file."""
     job = load_case(path)
     if isinstance(job, SpaceJob):
         return job

@@ -32,7 +32,6 @@ class Dialect(NamedTuple):
     decimal: str  # ``"."`` or ``","``
 
     def cells(self, line: str) -> list[str]:
-        """The cells of a line."""
         return [part.strip().strip('"').strip() for part in line.split(self.separator)]
 
     def pointed(self, text: str) -> str:
@@ -55,8 +54,6 @@ _DIALECTS = [
 
 
 class RawTable(NamedTuple):
-    """A table as its source has it."""
-
     # Its columns, called ``"1"``, ``"2"``, ... if the file does not name them; those whose cells
     # are not all numbers are texts.
     frame: pd.DataFrame
@@ -65,7 +62,6 @@ class RawTable(NamedTuple):
 
 
 def read_text_table(path: Path) -> RawTable:
-    """A table in a text file, whoever wrote it."""
     regular_file(path, "readings file", _LARGEST)
     try:
         text = _decoded(path.read_bytes())

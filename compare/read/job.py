@@ -29,7 +29,6 @@ class _Stated:
 
     @property
     def stations(self) -> int:
-        """How many the sweep has."""
         return int(getattr(self.case, self._path).stations)
 
     def changed(self, stations: int, numerics: dict[str, Any]) -> Self:

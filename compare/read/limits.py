@@ -17,8 +17,6 @@ _Limits = TypeVar("_Limits", Tolerances, SpatialTolerances)
 
 
 class LimitTable(Table):
-    """A limit with its reason."""
-
     limit: Annotated[float, Field(ge=0)]
     reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 

@@ -34,7 +34,6 @@ class _MotionTable(Table):
     density: Annotated[Density, _POSITIVE] | None = None
 
     def build(self, beam: Beam) -> Motion:
-        """The motion."""
         period = self._period(beam)
         numbers = {name: x for name, x in self if name not in _MotionTable.model_fields}
         speed, solref = numbers["speed"], numbers["solref"]

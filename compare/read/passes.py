@@ -53,7 +53,6 @@ class Pass:
         return int(self.readings.trusted.sum())
 
     def __repr__(self) -> str:
-        """Name, direction and how much was kept."""
         return f"Pass({self.name} to the {self.direction}: {self.kept} of {self.rows} rows)"
 
 

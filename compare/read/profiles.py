@@ -15,7 +15,6 @@ class ProfileTable(Table):
     scale: Length = 1.0
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
-        """The contour."""
         numbers = self.model_dump(exclude={"kind", "scale"})
         return CONTOURS[self.kind](**numbers).scaled(self.scale)
 
@@ -50,5 +49,4 @@ class MeshTable(ProfileTable):
     tolerance: float = 0.0
 
     def build(self, folder: Path) -> Contour:
-        """The section of the mesh."""
         return CONTOURS[self.kind](folder / self.file, **self.model_dump(exclude={"kind", "file"}))

@@ -59,7 +59,6 @@ class Dimension:
     unit: str
 
     def __call__(self, value: object) -> float:
-        """The number."""
         try:
             if isinstance(value, int | float) and not isinstance(value, bool):
                 return Bare(value)
@@ -76,7 +75,6 @@ class VaryingDimension(Dimension):
     """The same, or a table of it: pairs of an arc length from the clamp and the value there."""
 
     def __call__(self, value: object) -> Any:  # noqa: ANN401  # a number, or pairs of them
-        """The number, or the pairs."""
         if not isinstance(value, list | tuple):
             return super().__call__(value)
         if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in value):
@@ -137,7 +135,6 @@ class Table(BaseModel):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Keys that there may be."""
         return [field.alias or name for name, field in cls.model_fields.items()]
 
 
@@ -162,7 +159,6 @@ _Schema = TypeVar("_Schema", bound=Table)
 
 
 def validated(schema: type[_Schema], tables: Mapping[str, Any], place: KeyPlace) -> _Schema:
-    """What a file's tables say."""
     try:
         file = schema.model_validate(tables)
     except ValidationError as error:

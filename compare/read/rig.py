@@ -136,7 +136,6 @@ def _called(source: Source) -> str:
 
 
 def raw_table(source: Source) -> RawTable:
-    """The table, as it is."""
     if isinstance(source, pd.DataFrame):
         return RawTable(source)
     if isinstance(source, Mapping):
@@ -198,7 +197,6 @@ def renamed(
 
 
 def cells(table: pd.DataFrame, column: str, called: object, remedy: str) -> pd.Series:
-    """A column of a table."""
     if column in table:
         return table[column]
     there = ", ".join(map(str, table.columns[:20]))

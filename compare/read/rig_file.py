@@ -26,8 +26,6 @@ class RigColumn(Table):
 
 
 class RigColumns(Table):
-    """The four sensed quantities, and the time if there is one."""
-
     foot_x: RigColumn
     force_x: RigColumn
     force_y: RigColumn
@@ -63,8 +61,6 @@ class RigPasses(Table):
 
 
 class Rig(Table):
-    """What a rig's description holds."""
-
     beam: BeamTable  # the vibrissa, in units if the columns are
     columns: RigColumns  # by sensed quantity
     passes: RigPasses = RigPasses()  # how rows are passes
@@ -73,7 +69,6 @@ class Rig(Table):
 
 
 def read_rig(path: Path) -> Rig:
-    """The description of a rig."""
     file = TomlFile.read(path, "description of the rig")
     rig = validated(Rig, file.tables, file.place)
     in_units = any(rig.columns[name].unit for name in SENSED)

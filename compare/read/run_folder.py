@@ -15,7 +15,7 @@ from analytic.problem.files import regular_file
 from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.explain.budget import Budget
-from compare.explain.split_space import Parts
+from compare.explain.parts import Parted
 from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.space_readings import is_spatial
 from compare.validate.validation import Validation
@@ -29,15 +29,12 @@ _REMEDY = "run it again, or remove its folder"
 
 @dataclass(frozen=True)
 class StoredRun:
-    """A run as its folder has it."""
-
     reference: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
     candidate: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
     # Those that the run was judged by; the defaults if it was not.
     tolerances: Tolerances | SpatialTolerances
     frame: Frame  # that the components were compared in
-    budget: Budget | None  # of the same sweeps in the plane, if it was measured
-    parts: Parts | None  # of the same sweeps in space, if they were measured
+    budget: Parted | None  # of the same sweeps, if it was measured
     validation: Validation | None  # of the same sweeps, if uncertainties were stated
     body: Floats | None  # shape (triangles, 3, 3); what the run's pictures showed of the body
 
@@ -47,21 +44,19 @@ def read_run(folder: Path) -> StoredRun:
     reference, candidate = _sweeps(folder)
     judged = read_stored_if_there(folder / "comparison.json", _Judged) or _NOT_JUDGED
     in_space = is_spatial(reference)
-    sweep, budget = (SpatialReadings if in_space else Readings), folder / "budget.json"
+    sweep = SpatialReadings if in_space else Readings
     return StoredRun(
         sweep.read(reference),
         sweep.read(candidate),
         judged.limits(SpatialTolerances) if in_space else judged.limits(Tolerances),
         judged.frame,
-        None if in_space else read_stored_if_there(budget, Budget),
-        read_stored_if_there(budget, Parts) if in_space else None,
+        read_stored_if_there(folder / "budget.json", Parted if in_space else Budget),
         _validation(folder, judged),
         _body(folder / "body.ply"),
     )
 
 
 def _sweeps(folder: Path) -> tuple[Path, Path]:
-    """The files of the two sweeps that a run has left."""
     found = [*folder.glob("mujoco-*.parquet")]
     sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
     if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
@@ -89,7 +84,6 @@ def read_stored(file: Path, kind: type[_T]) -> _T:
 
 
 def read_stored_if_there(file: Path, kind: type[_T]) -> _T | None:
-    """The same; None if there is no such file."""
     return read_stored(file, kind) if file.exists() else None
 
 
@@ -108,7 +102,6 @@ class _Judged(BaseModel):
     validation: dict[str, Any] | None = None
 
     def limits(self, kind: type[AnyTolerances]) -> AnyTolerances:
-        """The limits that the run was judged by."""
         limits = {n: Limit(x, self.tolerance_reasons[n]) for n, x in self.tolerances.items()}
         general = {name: limits.pop(name) for name in kind.general() if name in limits}
         return kind(**general, special=limits)

@@ -9,8 +9,8 @@ from pydantic import AliasPath, BaseModel, Field
 
 from analytic import CASE_NAMES
 from compare.explain.budget import Budget
+from compare.explain.parts import Parted
 from compare.explain.split import Split
-from compare.explain.split_space import Parts
 from compare.read.run_folder import read_stored, read_stored_if_there
 
 _Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
@@ -38,16 +38,14 @@ class RunRecord(BaseModel):
     stations: int = _at("candidate", "stations", gt=0)
     provenance: dict[str, Any] = _at("candidate", "provenance")
     folder: Path = Path()
-    budget: Budget | Parts | None = None  # if it was measured; the parts are of one in space
+    budget: Parted | None = None  # if it was measured
 
     @property
     def case(self) -> str:
-        """Name of the case."""
         return str(self.provenance.get("case", self.folder.name))
 
     @property
     def profile(self) -> str:
-        """What the object is."""
         return str(self.provenance.get("profile", self.provenance.get("body", "not recorded")))
 
     @property
@@ -68,7 +66,6 @@ class RunRecord(BaseModel):
 
     @property
     def agrees(self) -> bool:
-        """Whether no tolerance is exceeded."""
         return self.verdict == "agrees"
 
     @property
@@ -119,8 +116,6 @@ class EngineOutcome:
 
 @dataclass(frozen=True)
 class EnginesRecord:
-    """One run in many engines."""
-
     case: str
     engines: list[EngineOutcome]
     split: Split | None
@@ -133,7 +128,7 @@ def read_runs(folder: Path) -> list[RunRecord]:
 
 def _read(file: Path) -> RunRecord:
     run = read_stored(file, RunRecord)
-    kind: type[Budget] | type[Parts] = Parts if "force_z" in run.rms else Budget
+    kind = Parted if "force_z" in run.rms else Budget
     budget = read_stored_if_there(file.with_name("budget.json"), kind)
     return run.model_copy(update={"folder": file.parent, "budget": budget})
 

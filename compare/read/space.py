@@ -38,7 +38,6 @@ class BodyTable(Table):
     kind: str
 
     def build(self, folder: Path) -> Body:  # files are in it, if there are any
-        """The body."""
         body: Body = getattr(space, self.kind)(**self.model_dump(exclude={"kind"}))
         return body
 
@@ -78,13 +77,10 @@ class SolidTable(BodyTable):
     tolerance: Length = 0.0
 
     def build(self, folder: Path) -> Body:
-        """The body in the file."""
         return convex_mesh(folder / self.file, **self.model_dump(exclude={"kind", "file"}))
 
 
 class PathTable(Table):
-    """The way of the foot."""
-
     points: Annotated[list[Point], Field(min_length=2)]
     height: Length = 0.0
     tangent: Axis = (0.0, 1.0, 0.0)
@@ -101,8 +97,6 @@ class PathTable(Table):
 
 
 class SpaceFile(Table):
-    """What a case file of a sweep in space holds."""
-
     name: FileName | None = None  # what files and reports call the case
     beam: BeamTable = BeamTable()
     body: Annotated[Stated | PrismTable | SolidTable, Field(discriminator="kind")]
@@ -114,7 +108,6 @@ class SpaceFile(Table):
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def case(self, folder: Path, name: str) -> SpatialCase:
-        """The whole problem."""
         if isinstance(self.body, PrismTable) and self.profile is not None:
             body: Body = prism(self.profile.build(folder), self.body.axis, self.body.origin)
         elif isinstance(self.body, PrismTable) or self.profile is not None:
@@ -135,7 +128,6 @@ class SpaceFile(Table):
 
 
 def job_in_space(file: TomlFile) -> SpaceJob:
-    """The job that a case file of a sweep in space states."""
     found = validated(SpaceFile, file.tables, file.place)
     case = found.case(file.path.parent, found.name or name_of(file.path))
     limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)

@@ -37,8 +37,6 @@ from mujoco_models.user_model.shipped import find_model
 
 
 class BeamTable(Table):
-    """The vibrissa."""
-
     length: Length = 1.0
     flexural_rigidity: RigidityAlong = 1.0
     radius: Length | None = None
@@ -75,15 +73,12 @@ class WeightTable(Table):
 
 
 class StationsTable(Table):
-    """The positions of the foot."""
-
     stations: int = Sweep().stations
     start: Length | None = None
     stop: Length | None = None
     direction: Direction = Sweep().direction
 
     def build(self) -> Sweep:
-        """The sweep."""
         return Sweep(**self.model_dump())
 
 
@@ -96,7 +91,6 @@ class WhiskTable(Table):
     stations: int = Whisk.stations
 
     def build(self) -> Whisk:
-        """The way of the clamp."""
         return Whisk(**self.model_dump())
 
 
@@ -120,7 +114,6 @@ class ModelTable(Table):
     contact: ContactKind = "own"
 
     def build(self, folder: Path) -> OwnModel:
-        """The model."""
         names = self.model_dump(exclude={"file"})
         path = folder / self.file
         return OwnModel(path if path.exists() else find_model(self.file), **names)
@@ -168,7 +161,6 @@ class CaseFile(Table):
         return found
 
     def way(self) -> Sweep | Whisk:
-        """The way of the clamp."""
         if self.whisk is None:
             return self.sweep.build()
         if "sweep" in self.model_fields_set:
@@ -214,7 +206,6 @@ class BeamFile(Table):
 
 
 def job_in_the_plane(file: TomlFile) -> Job:
-    """The job that a case file states."""
     given = file.tables.get("profile")
     each = [file.tables]
     if isinstance(given, list) and given:  # several objects, [[profile]]

@@ -22,15 +22,12 @@ _NO_FLOAT = re.compile(r"\d{309}|0[xob][\da-f_]{256}", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class TomlFile:
-    """A TOML file, read and parsed."""
-
     path: Path  # where it is
     text: str  # what is in it
     tables: dict[str, Any]  # the same, parsed
 
     @classmethod
     def read(cls, path: Path, what: str) -> "TomlFile":
-        """Read a file."""
         regular_file(path, what, _LARGEST)
         try:
             text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")

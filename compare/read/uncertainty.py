@@ -11,8 +11,7 @@ from compare.read.complaints import shown
 from compare.read.quantities import EXAMPLES, Table
 from compare.read.toml import KeyPlace
 from compare.read.units import DIMENSIONS, in_si
-from compare.validate.inputs import GAINS, INPUTS, nominal
-from compare.validate.stated import NAMES, Input, Uncertainties
+from compare.validate.stated import GAINS, INPUTS, NAMES, Input, Uncertainties, nominal
 
 _TABLE = "uncertainty"
 
@@ -45,12 +44,10 @@ class UncertaintyTable(Table):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Those of inputs, too."""
         return [*NAMES, *super().keys()]
 
 
 def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Uncertainties | None:
-    """What an ``[uncertainty]`` table says."""
     if not table.model_fields_set:
         return None
     stated = table.__pydantic_extra__

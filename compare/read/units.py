@@ -58,7 +58,6 @@ def unit_in_si(unit: str, dimension: str) -> float:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit, of any dimension."""
     return _parsed(text) is not None
 
 

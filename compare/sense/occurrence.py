@@ -25,5 +25,4 @@ class Occurrence:
         return abs(self.difference) <= tolerance + self.uncertainty
 
     def to_dict(self) -> dict[str, float | None]:
-        """What ``comparison.json`` holds."""
         return {**asdict(self), "difference": self.difference}

@@ -60,7 +60,6 @@ class Record:
                 yield f"{count} of {rows} rows {what}"
 
     def to_dict(self) -> dict[str, int | float]:
-        """What ``comparison.json`` holds."""
         return {
             **{
                 name: int(getattr(self, name).sum())
@@ -72,7 +71,6 @@ class Record:
         }
 
     def __repr__(self) -> str:
-        """The defects, or that there are none."""
         return f"Record({'; '.join(self.defects()) or 'sound'})"
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from analytic import CLAMP_READINGS, PHASES
 from compare.explain.budget import Budget
 from compare.explain.motion import MotionBudget
+from compare.explain.parts import Parted
 from compare.explain.suspects import Suspect
 from compare.show.document import Block, Items, Table, Text
 from compare.show.numbers import percent, short, words
@@ -13,12 +14,11 @@ from compare.show.style import PHASE_LETTERS
 _RMS = "relative to each reading's largest magnitude"
 
 
-def left_over(found: Budget) -> str:
-    """What stays unexplained."""
+def left_over(found: Parted) -> str:
     return f"{short(found.left.rms)} +- {short(found.left.uncertainty)}"
 
 
-def headline(found: Budget) -> str:
+def headline(found: Parted) -> str:
     """What a budget comes to, in one sentence."""
     rest = left_over(found)
     if found.closes:
@@ -30,22 +30,19 @@ def headline(found: Budget) -> str:
     return f"The largest part is {found.blame}; {remains}"
 
 
-def budget_summary(found: Budget | MotionBudget) -> Iterator[Block]:
+def budget_summary(found: Parted) -> Iterator[Block]:
     """The parts, what they come to, and the suspects."""
     yield _parts_table(found)
+    yield Text("", strong=f"{headline(found)}.")
+    if isinstance(found, Budget) and found.suspects:
+        yield Items([_suspect(one) for one in found.suspects])
     if isinstance(found, MotionBudget):
-        closes = "closes" if found.closes else "does not close"
-        yield Text(f"The budget {closes}; {found.blame} dominates.")
         yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
         if found.left_out:
             yield Text(f"Diverged, and left out: {', '.join(found.left_out)}.")
-        return
-    yield Text("", strong=f"{headline(found)}.")
-    if found.suspects:
-        yield Items([_suspect(one) for one in found.suspects])
 
 
-def _parts_table(found: Budget | MotionBudget) -> Table:
+def _parts_table(found: Parted) -> Table:
     """The parts with their uncertainties, the whole, and what the closed form says of some."""
     rows: list[Sequence[str]] = [
         (name, *(f"{short(one.rms)} ± {short(one.uncertainty)}" for one in parts.values()))
@@ -58,7 +55,7 @@ def _parts_table(found: Budget | MotionBudget) -> Table:
     near = " (next to the snap-off, too)" if isinstance(found, Budget) else ""
     return Table(
         f"Root mean square and uncertainty over {found.stations} stations{near}, {_RMS}",
-        ("part", *CLAMP_READINGS),
+        ("part", *found.disagreement),
         rows,
         blamed=[i for i, name in enumerate(found.parts) if name == found.blame],
         whole=[len(found.parts)],
@@ -66,7 +63,6 @@ def _parts_table(found: Budget | MotionBudget) -> Table:
 
 
 def phases_table(found: Budget) -> Table:
-    """The parts in each phase."""
     there = {p for sizes in found.by_phase.values() for by in sizes.values() for p in by}
     phases = [phase for phase in PHASES if phase in there]
     return Table(
@@ -81,7 +77,6 @@ def phases_table(found: Budget) -> Table:
 
 
 def convergence_table(found: Mapping[int, Mapping[str, float]]) -> Table:
-    """The disagreement by number of segments."""
     return Table(
         f"Root mean square, {_RMS}",
         ("segments", *CLAMP_READINGS),

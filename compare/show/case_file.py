@@ -10,7 +10,7 @@ from analytic import Calibration
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.quantities import QUANTITIES
 from compare.read.units import in_si
-from compare.validate.inputs import INPUTS
+from compare.validate.stated import INPUTS
 
 CASE_MARK = "# Written by `vibrissa calibrate`"
 """The first line of a case file that is not a user's own."""
@@ -58,7 +58,6 @@ def calibrated_case(
 
 
 def as_toml(tables: Mapping[str, Any]) -> str:
-    """Tables as a TOML file."""
     lines = [f"{_key(k)} = {_value(x)}" for k, x in tables.items() if not isinstance(x, Mapping)]
     for name, table in tables.items():
         if isinstance(table, Mapping):

@@ -1,6 +1,7 @@
 """What the pages of all comparisons, in the plane and in space, have in common."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,13 @@ import numpy as np
 from analytic import PHASES, Readings
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison, SpatialComparison
+from compare.explain.budget import UNRESOLVED, Budget
+from compare.explain.parts import Parted
 from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
-from compare.show.document import Block, Document, Table, Text, Tile, Verdict, sections
+from compare.show.budgets import budget_summary, left_over, phases_table
+from compare.show.document import Block, Document, Picture, Table, Text, Tile, Verdict, sections
+from compare.show.figures.budget_bars import bars
 from compare.show.numbers import place, quantity, sentence, short, words
 from compare.show.style import ALONG, PHASE_LETTERS, Along
 
@@ -34,6 +39,7 @@ def document(
     about: str,
     verdict: Verdict,
     tiles: Iterable[Tile],
+    budget: Parted | None,
     *parts: tuple[str, str, Iterable[Block]],
 ) -> Document:
     """All that there is to say of a comparison, the sections of its own before the common ones."""
@@ -49,6 +55,7 @@ def document(
         f"EI/L = {moment}{own}.",
         verdict,
         sections(
+            ("budget", "What the disagreement is made of", _parts(budget)),
             *parts,
             ("tolerances", "Tolerances, and why", _limits(found)),
             ("settings", "Settings and versions", [_settings(reference, found.candidate)]),
@@ -81,6 +88,14 @@ def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
     at = along(found).at.format(place(one.at / found.reference.running_unit[0]))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
     yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
+
+
+def unexplained(budget: Parted | None) -> Iterator[Tile]:
+    """What a budget leaves, if there is one."""
+    if budget is not None:
+        still_open = "is undecided" if budget.undecided else "does not close"
+        said = "closes" if budget.closes else still_open
+        yield Tile("stays unexplained", left_over(budget), f"the budget {said}")
 
 
 def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
@@ -130,6 +145,26 @@ def places_table(
     return Table(caption, [*head, "uncertainty"] if unsure else head, rows)
 
 
+def _parts(budget: Parted | None) -> Iterator[Block]:
+    if budget is None:
+        return
+    table, *said = budget_summary(budget)
+    yield from said
+    shows = "Bars: the parts of {}'s disagreement; the table below has the numbers"
+    yield Picture(
+        "budget-bars",
+        {shows.format(name): partial(bars, budget, name) for name in budget.disagreement},
+        "Each part is measured by a controlled change of its own and combines with the others as a "
+        "signal over the sweep, so sizes do not add up; the axis is logarithmic. Orange: the "
+        "largest part. Last: what no part explains. Whiskers: uncertainty. Dashed: the whole "
+        f"disagreement. Grey: less than {short(UNRESOLVED)} is not resolved.",
+        "three",
+    )
+    yield table
+    if isinstance(budget, Budget):
+        yield phases_table(budget)
+
+
 def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:
     """The limits of a verdict, what they are numbers of, and why they are as large as they are."""
     allowed: dict[str, Limit] = found.tolerances.limits()
@@ -147,7 +182,6 @@ def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:
 def _settings(
     reference: Readings | SpatialReadings, candidate: Readings | SpatialReadings
 ) -> Table:
-    """What is recorded of both sweeps, side by side."""
     sweeps = (_recorded(reference), _recorded(candidate))
     names = dict.fromkeys(name for sweep in sweeps for name in sweep)
     rows = [(words(name), *(sweep.get(name, "") for sweep in sweeps)) for name in names]

@@ -16,8 +16,6 @@ Layout: TypeAlias = Literal["wide", "panels", "three", "middle", "still"]
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph."""
-
     said: str
     strong: str = ""  # what stands before it, in bold
     aside: bool = False  # whether it may be passed over
@@ -25,8 +23,6 @@ class Text:
 
 @dataclass(frozen=True)
 class Items:
-    """Lines of a list."""
-
     said: Sequence[str]
 
 
@@ -59,8 +55,6 @@ def tiles_line(found: Iterable[Tile]) -> Text:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What it comes to."""
-
     good: bool
     claim: str  # in bold
     said: str = ""
@@ -80,7 +74,6 @@ class Picture:
 
     @cached_property
     def figures(self) -> "Mapping[str, Figure]":
-        """The figures, by what they show."""
         return {shows: draw() for shows, draw in self.draw.items()}
 
 
@@ -102,7 +95,6 @@ class Film:
 
     @classmethod
     def of(cls, folder: Path) -> "Film | None":
-        """The film of a folder."""
         film = cls(folder / "animation.gif", folder / "still-3.png")
         return film if film.gif.is_file() and film.still.is_file() else None
 
@@ -126,8 +118,6 @@ Block: TypeAlias = Text | Items | Table | Verdict | Picture | Image | Film | Tur
 
 @dataclass(frozen=True)
 class Section:
-    """A part with a title."""
-
     name: str  # by which it is linked to
     title: str
     blocks: Sequence[Block]
@@ -135,8 +125,6 @@ class Section:
 
 @dataclass(frozen=True)
 class Document:
-    """All that is said of a result."""
-
     title: str
     lead: str
     verdict: Verdict
@@ -144,7 +132,6 @@ class Document:
     tiles: Sequence[Tile] = ()
 
     def pictures(self) -> Iterator[Picture]:
-        """All pictures, in order."""
         for section in self.sections:
             for block in section.blocks:
                 within = block.blocks if isinstance(block, Beside) else [block]

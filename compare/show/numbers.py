@@ -24,12 +24,10 @@ def place(x: float | None) -> str:
 
 
 def percent(x: float) -> str:
-    """A share to a tenth of a hundredth."""
     return f"{100 * x:.1f} %"
 
 
 def words(name: str) -> str:
-    """An identifier as words."""
     return name.replace("_", " ").replace("phase b", "Phase B")
 
 

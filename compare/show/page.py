@@ -46,12 +46,10 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    """A figure as the contents of a PNG file."""
     return _drawn(figure, "png", dpi=dots_per_inch)
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a PNG, whole or not at all."""
     return write_whole(path, png(figure))
 
 

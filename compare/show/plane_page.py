@@ -6,10 +6,10 @@ from functools import partial
 
 from analytic import CLAMP_READINGS, PHASES, Beam
 from compare.comparison import Comparison
-from compare.explain.budget import UNRESOLVED, Budget
-from compare.explain.convergence import fitted_orders
+from compare.explain.budget import Budget
+from compare.explain.parts import fitted_orders
 from compare.show import comparison_page as common
-from compare.show.budgets import budget_summary, convergence_table, left_over, phases_table
+from compare.show.budgets import convergence_table
 from compare.show.document import (
     Beside,
     Block,
@@ -23,7 +23,7 @@ from compare.show.document import (
     tiles_line,
 )
 from compare.show.figures import readings as drawn
-from compare.show.figures.budget_bars import bars, convergence_picture
+from compare.show.figures.budget_bars import convergence_picture
 from compare.show.figures.geometry import geometry
 from compare.show.numbers import percent, place, quantity, sentence, short, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
@@ -34,7 +34,6 @@ from compare.show.verdict import absent_transitions, scope, verdict, why, worst_
 def plane_document(
     comparison: Comparison, budget: Budget | None = None, film: Film | None = None
 ) -> Document:
-    """All that there is to say of a comparison in the plane."""
     contour = comparison.reference.provenance.get("profile") or "Contour not recorded"
     found = plane_verdict(comparison, budget)
     remarks = [*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
@@ -44,7 +43,7 @@ def plane_document(
         f"{contour}; the figures rest on {comparison.stations} stations.",
         replace(found, remarks=remarks),
         plane_tiles(comparison, budget),
-        ("budget", "What the disagreement is made of", _parts(budget)),
+        budget,
         ("validation", validation, _validation(comparison)),
         ("apart", "How far apart, reading by reading", _apart(comparison)),
         ("sweep", "The sweep", _sweep(comparison, film)),
@@ -80,7 +79,6 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 
 
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
-    """The numbers that matter."""
     yield from common.sizes(comparison, worst_reading(comparison))
     apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
     shift = "none" if apart is None else short(apart / size, f" {unit}")
@@ -97,29 +95,7 @@ def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterato
     noise = max(comparison.noise.level.values())
     if noise:
         yield Tile("noise", short(noise), "of the noisiest reading, allowed for in the limits")
-    if budget is not None:
-        still_open = "is undecided" if budget.undecided else "does not close"
-        said = "closes" if budget.closes else still_open
-        yield Tile("stays unexplained", left_over(budget), f"the budget {said}")
-
-
-def _parts(budget: Budget | None) -> Iterator[Block]:
-    if budget is None:
-        return
-    table, *said = budget_summary(budget)
-    yield from said
-    shows = "Bars: the parts of {}'s disagreement; the table below has the numbers"
-    yield Picture(
-        "budget-bars",
-        {shows.format(name): partial(bars, budget, name) for name in CLAMP_READINGS},
-        "Each part is measured by a controlled change of its own and combines with the others as a "
-        "signal over the sweep, so sizes do not add up; the axis is logarithmic. Orange: the "
-        "largest part. Last: what no part explains. Whiskers: uncertainty. Dashed: the whole "
-        f"disagreement. Grey: less than {short(UNRESOLVED)} is not resolved.",
-        "three",
-    )
-    yield table
-    yield phases_table(budget)
+    yield from common.unexplained(budget)
 
 
 def _validation(comparison: Comparison) -> Iterator[Block]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from analytic import CLAMP_READINGS, InputError
 from compare.explain.budget import UNRESOLVED, Budget
-from compare.explain.split_space import Parts
+from compare.explain.parts import Parted
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
 from compare.show.budgets import left_over
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
@@ -16,7 +16,6 @@ from compare.show.side_by_side import outcomes_table, parts_table, reasons
 
 
 def runs_document(folder: Path) -> Document:
-    """All that there is to say of the runs in the folders of `folder`."""
     runs, engines = read_runs(folder), read_engines(folder)
     if not runs and not engines:
         raise InputError(
@@ -55,7 +54,7 @@ def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
             f"The largest rms is {short(error)} of the largest magnitude ({name}, {run.case}, "
             f"{run.beam})."
         )
-    budgets = [run.budget for run in runs if isinstance(run.budget, Budget)]
+    budgets = [run.budget for run in runs if run.budget is not None]
     if budgets:
         worst_explained = max(budgets, key=lambda one: one.left.rms)
         closed = sum(one.closes for one in budgets)
@@ -79,7 +78,7 @@ def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
 def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
     yield Text(f"{runs[0].profile}.")
     for run in runs:
-        if isinstance(run.budget, Budget):
+        if run.budget is not None:
             shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
             caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
             yield Image(run.folder / "budget.png", shows, caption)
@@ -108,18 +107,14 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
     return Table("Each run against its closed form", head, rows, words=(0, 1, len(head) - 3))
 
 
-def _largest_and_left(budget: Budget | Parts | None) -> tuple[str, str]:
-    """The largest part, and what stays unexplained."""
+def _largest_and_left(budget: Parted | None) -> tuple[str, str]:
     if budget is None:
         return "not measured", "not measured"
-    if isinstance(budget, Parts):
-        sizes = budget._asdict()
-        largest = max("discretisation", "softness", "unexplained", key=sizes.__getitem__)
-        return largest, short(budget.unexplained)
     said = budget.blame
     if budget.blame == "discretisation":
         said += f" of order {budget.order:.2f}"
-    said += "".join(f", suspect: {one.name} {one.size} off" for one in budget.suspects[:1])
+    suspects = budget.suspects if isinstance(budget, Budget) else ()
+    said += "".join(f", suspect: {one.name} {one.size} off" for one in suspects[:1])
     if not budget.closes:
         said += "; undecided" if budget.undecided else "; does not close"
     return said, left_over(budget)

@@ -36,7 +36,6 @@ class SweepScene:
 
     @classmethod
     def of(cls, readings: SpatialReadings, body: Body | Floats | None) -> "SweepScene":
-        """The scene of a sweep."""
         length, table = readings.beam.length, readings.table
         found = reconstruct_space(readings)
         phase = table["phase"] if "phase" in table else found["phase"]

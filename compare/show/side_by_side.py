@@ -59,7 +59,6 @@ class SideBySide:
 
     @property
     def reference(self) -> Readings:
-        """What the sweeps are compared with."""
         return next(iter(self.against.values())).reference
 
     @property
@@ -78,7 +77,6 @@ class SideBySide:
         return parts
 
     def to_dict(self) -> dict[str, Any]:
-        """What the JSON file holds."""
         source = self.reference.source
         found = {(source, name): one for name, one in self.against.items()} | self.between
         return {
@@ -131,7 +129,6 @@ def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Pat
 
 
 def side_by_side_document(found: SideBySide) -> Document:
-    """All that there is to say of sweeps side by side."""
     reference = found.reference
     object_ = reference.provenance.get("profile") or "Contour not recorded"
     return Document(
@@ -167,7 +164,6 @@ def summary(found: SideBySide) -> Iterator[Block]:
 def outcomes_table(
     found: Mapping[str, Sequence[EngineOutcome]], reference: str = "the closed form"
 ) -> Table:
-    """Each sweep against the reference, by case."""
     rows = {case: [_outcome(one) for one in outcomes] for case, outcomes in found.items()}
     head = ("sweep", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
     caption = f"Each against {reference}, relative rms"
@@ -195,7 +191,6 @@ def reasons(found: Iterable[EngineOutcome]) -> Iterator[Items]:
 
 
 def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
-    """What the disagreement is made of, by case."""
     rows = {
         case: [(part, *(short(rms[name]) for name in CLAMP_READINGS)) for part, rms in of.items()]
         for case, of in found.items()
@@ -219,7 +214,6 @@ def _by_case(
 
 
 def _between(found: SideBySide) -> Iterator[Table]:
-    """The sweeps against each other, if there are several."""
     rows = [
         (f"{one}, {other}", *(short(pair.disagreement[name].rms) for name in CLAMP_READINGS))
         for (one, other), pair in found.between.items()
@@ -266,7 +260,6 @@ def _fairness(found: SideBySide) -> Iterator[Block]:
 
 
 def error_against_time(found: SideBySide) -> Figure:
-    """Draw the rms of each reading against the time a station, for all sweeps."""
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     ax = figure.subplots()
     ax.set(

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from compare.comparison import SpatialComparison
-from compare.explain.split_space import Parts
+from compare.explain.parts import Parted
 from compare.show import comparison_page as common
 from compare.show.document import (
     Block,
@@ -26,10 +26,9 @@ from compare.show.scene import SweepScene
 def spatial_document(
     comparison: SpatialComparison,
     scene: SweepScene,
-    parts: Parts | None = None,
+    budget: Parted | None = None,
     film: Film | None = None,
 ) -> Document:
-    """All that there is to say of a comparison in space."""
     body = comparison.reference.provenance.get("body", "Body not recorded")
     touching, stations = comparison.compared.sum(), len(comparison.compared)
     return common.document(
@@ -37,25 +36,22 @@ def spatial_document(
         f"{body}; {touching} of {stations} stations compared: those at which both touch. "
         f"Components are in the {comparison.frame}'s frame.",
         spatial_verdict(comparison),
-        spatial_tiles(comparison, parts),
-        ("budget", "What the disagreement is made of", [parts_table(parts)] if parts else []),
+        spatial_tiles(comparison, budget),
+        budget,
         ("apart", "How far apart, component by component", _apart(comparison)),
         ("sweep", "The sweep", _sweep(scene, film)),
         ("events", "Where they touch and leave", _events(comparison)),
     )
 
 
-def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Iterator[Block]:
+def spatial_summary(comparison: SpatialComparison) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
     yield spatial_verdict(comparison)
     yield tiles_line(spatial_tiles(comparison))
     yield from common.apart_table(comparison)
-    if parts is not None:
-        yield parts_table(parts)
 
 
 def spatial_verdict(comparison: SpatialComparison) -> Verdict:
-    """Whether the two agree, and why not."""
     name, worst = comparison.largest, comparison.worst
     rms = short(comparison.disagreement[name].rms)
     allowed = short(comparison.tolerances.of(name, "rms"))
@@ -66,8 +62,7 @@ def spatial_verdict(comparison: SpatialComparison) -> Verdict:
     )
 
 
-def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> Iterator[Tile]:
-    """The numbers that matter."""
+def spatial_tiles(comparison: SpatialComparison, budget: Parted | None = None) -> Iterator[Tile]:
     yield from common.sizes(comparison, comparison.largest)
     contact = comparison.contact
     if contact.stations:
@@ -85,28 +80,12 @@ def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> 
             yield Tile(
                 f"{words(name)} apart", apart, f"candidate less reference; {allowed} allowed"
             )
-    if parts is not None:
-        yield Tile("stays unexplained", short(parts.unexplained), f"of {short(parts.whole)}")
+    yield from common.unexplained(budget)
 
 
 def events_table(comparison: SpatialComparison) -> Table:
-    """Where both sweeps touch and leave."""
     caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
     return common.places_table(comparison, caption, comparison.events)
-
-
-def parts_table(parts: Parts) -> Table:
-    """What the disagreement is made of."""
-    refined, harder = "twice (or half) as many segments, order two", "a contact ten times as stiff"
-    rows = [
-        ("discretisation", short(parts.discretisation), refined),
-        ("softness", short(parts.softness), f"{harder} (or soft)"),
-        ("unexplained", short(parts.unexplained), "what is left"),
-        ("disagreement", short(parts.whole), ""),
-    ]
-    caption = f"Root mean square of the worst component over {parts.stations} stations; signals, so"
-    head = ("part", "rms", "measured by")
-    return Table(f"{caption} sizes do not add up", head, rows, words=(0, 2), whole=[3])
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:

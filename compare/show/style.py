@@ -63,7 +63,6 @@ _LONGEST = 60  # characters of a name; more would leave no room for the picture
 
 
 def axis_label(name: str) -> str:
-    """A reading's symbol and unit."""
     unit = UNITS[name]
     return f"{SYMBOLS[name]} / {f'({unit})' if '/' in unit else unit}"
 

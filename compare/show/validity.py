@@ -6,15 +6,14 @@ from analytic import Beam
 from compare.comparison import Comparison
 from compare.show.document import Table, Text
 from compare.show.numbers import percent, quantity, short, words
-from compare.validate.inputs import GAINS, INPUTS
 from compare.validate.spread import NOISE, NUMERICS
+from compare.validate.stated import GAINS, INPUTS
 from compare.validate.validation import Validation
 
 _PLAIN = {NOISE: "noise of the data", NUMERICS: "the simulation's numerics"}
 
 
 def validation_lines(comparison: Comparison) -> list[str]:
-    """What a validation comes to."""
     found = comparison.validation
     return [] if found is None else [*_lines(found, comparison.reference.beam)]
 

@@ -1,7 +1,7 @@
 """What a disagreement of MuJoCo with the closed form is made of, for any kind of case."""
 
 from collections.abc import Callable, Mapping
-from typing import TypeAlias, overload
+from typing import overload
 
 from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.errors import require
@@ -9,8 +9,9 @@ from analytic.problem.mirror import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
+from compare.explain.in_space import budget_in_space, changes_in_space
 from compare.explain.motion import MotionBudget
-from compare.explain.split_space import Parts, split_space
+from compare.explain.parts import Parted
 from compare.explain.variations import on_polygon, variations
 from compare.simulate.moving import budget_in_motion
 from compare.simulate.workers import SWEEPERS, running
@@ -18,8 +19,6 @@ from mujoco_models import simulate_space, simulate_sweep
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings, SpatialSettings
 from mujoco_models.user_model.names import OwnModel
-
-AnyBudget: TypeAlias = Budget | MotionBudget | Parts
 
 
 @overload
@@ -46,7 +45,7 @@ def measure_budget(
     case: SpatialCase,
     settings: SpatialSettings | None = None,
     advance: Callable[[], None] = lambda: None,
-) -> tuple[Parts, Mapping[str, SpatialReadings]]: ...
+) -> tuple[Parted, Mapping[str, SpatialReadings]]: ...
 
 
 def measure_budget(
@@ -56,7 +55,7 @@ def measure_budget(
     *,
     motion: Motion | None = None,
     model: OwnModel | None = None,
-) -> tuple[AnyBudget, Mapping[str, Readings] | Mapping[str, SpatialReadings]]:
+) -> tuple[Parted, Mapping[str, Readings] | Mapping[str, SpatialReadings]]:
     """Measure what MuJoCo's disagreement with the closed form is made of, by controlled changes.
 
     Parameters
@@ -74,7 +73,7 @@ def measure_budget(
 
     Returns
     -------
-    found : Budget, MotionBudget or Parts
+    found : Budget, MotionBudget or Parted
         At rest in the plane, in motion, and in space; each has ``to_dict()``.
     sweeps : mapping of Readings or SpatialReadings
         All sweeps by name; ``"base"`` is the one in question.
@@ -108,24 +107,18 @@ def require_rest(motion: Motion | None) -> None:
 
 def _in_space(
     case: SpatialCase, settings: SpatialSettings, advance: Callable[[], None]
-) -> tuple[Parts, Mapping[str, SpatialReadings]]:
-    runs: dict[str, SpatialReadings] = {}
-
-    def sweep(chosen: SpatialSettings) -> SpatialReadings:
-        found = simulate_space(case, chosen)
-        name = "base" if not runs else f"N={chosen.segments}, k={chosen.contact_stiffness:g}"
-        runs[name] = found
-        advance()
-        return found
-
-    base = sweep(settings)
-    return split_space(solve_space(case), base, settings, sweep), runs
+) -> tuple[Parted, Mapping[str, SpatialReadings]]:
+    changes = changes_in_space(settings)
+    tasks = {name: (simulate_space, case, one) for name, one in changes.items()}
+    with running(tasks, advance, SWEEPERS) as swept:
+        exact = solve_space(case)
+        runs = {name: one.result() for name, one in swept.items()}
+    return budget_in_space(exact, runs, changes), runs
 
 
 def budget_at_rest(
     case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
 ) -> tuple[Budget, dict[str, Readings]]:
-    """The budget of a sweep at rest in the plane, and its sweeps."""
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))
     # Equal settings are swept once, and the longest first, so that no core waits for it at the end.
@@ -155,7 +148,6 @@ def has_primitive(case: Case) -> bool:
 
 
 def has_corners(case: Case, settings: Settings) -> bool:
-    """Whether MuJoCo's object has edges at sharp corners."""
     from mujoco_models.obstacles.kinds import place
 
     return len(place(leftward(case), settings).corners) > 0

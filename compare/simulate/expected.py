@@ -37,7 +37,6 @@ class Expected:
 
     @property
     def rms(self) -> float:
-        """Of all parts."""
         return math.hypot(_REST, *self.parts.values())
 
     @property

@@ -103,7 +103,6 @@ def stop_of(found: MeasuredBeam) -> float | None:
 
 
 def _friction(found: MeasuredBeam) -> float:
-    """Of what touches."""
     meeting = [geom for geom in found.geoms if geom.meets] or found.geoms
     return max(geom.friction for geom in meeting)
 

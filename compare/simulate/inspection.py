@@ -20,8 +20,6 @@ _WIDTH = 22
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a user's model is."""
-
     found: MeasuredBeam  # as `mujoco_models.inspect_model` measured it
     stated: Beam | None = None  # what it should be, in the model's units
 
@@ -37,11 +35,9 @@ class Inspection:
 
     @property
     def sound(self) -> bool:
-        """Whether there are no faults."""
         return not self.faults
 
     def lines(self) -> Iterator[str]:
-        """Figures and remarks, for reading."""
         found = self.found
         faults = len(self.faults)
         verdict = "sound" if self.sound else f"{faults} fault{'s' if faults > 1 else ''}"
@@ -82,7 +78,6 @@ class Inspection:
         yield "foot", found.drive or "nothing moves it"
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``inspection.json`` holds."""
         error, stiffness = elastica_error(self.found), clamp_stiffness(self.found)
         order = order_in_links(self.found)
         return {
@@ -97,6 +92,5 @@ class Inspection:
 
 
 def measured_beam(model: OwnModel) -> MeasuredBeam:
-    """What the vibrissa of a user's model is."""
     names = {name: getattr(model, name) for name in ("foot", "force", "torque", "geoms", "site")}
     return inspect_model(model.file, **names)

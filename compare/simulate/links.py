@@ -7,8 +7,7 @@ import numpy as np
 from scipy.optimize import root
 
 from analytic.problem.arrays import Floats
-from compare.measure.cantilever import tip_of
-from compare.simulate.rigidity import as_intended, is_curved, smooth_rigidity, tapers
+from compare.simulate.rigidity import as_intended, is_curved, smooth_rigidity, tapers, tip_of
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _FEWEST = 4  # joints: two of them are ends, and the others have to be alike

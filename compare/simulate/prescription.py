@@ -44,8 +44,6 @@ _POINTS = 400, 4.0, 3200  # of the contour: at least, over the wanted error, and
 
 @dataclass(frozen=True)
 class Prescription:
-    """A model, and what was measured of it."""
-
     whisker: Whisker
     error: float  # rms of the worst reading, relative to its largest magnitude
 

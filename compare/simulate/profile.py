@@ -30,7 +30,6 @@ def profile(found: MeasuredBeam) -> dict[str, tuple[Floats, Floats]]:
 
 
 def picture(found: MeasuredBeam) -> Figure:
-    """Draw it over arc length."""
     figure = Figure(figsize=_SIZE, layout="constrained")
     s = np.array([joint.s for joint in found.joints]) / found.length
     for ax, (name, (own, material)) in zip(

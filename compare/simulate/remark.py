@@ -16,8 +16,6 @@ FORCE = 3.0
 
 @dataclass(frozen=True)
 class Remark:
-    """A line on a model."""
-
     # A ``"fault"`` moves readings by about a per cent or more; a ``"note"`` is good to know.
     kind: Literal["fault", "note"]
     subject: str  # as ``"clamp"``

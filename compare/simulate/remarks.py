@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from analytic import Beam
+from compare.simulate import treatment
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
 from compare.simulate.rigidity import (
@@ -21,26 +22,6 @@ from compare.simulate.rigidity import (
     smooth_rigidity,
     tapers,
     unevenness,
-)
-from compare.simulate.treatment import (
-    HARD,
-    at_clamp,
-    beginning_later,
-    contacts,
-    damped,
-    evened,
-    first_stiffness,
-    frictionless,
-    half_cell,
-    hardened,
-    hardest,
-    joints,
-    moving,
-    solved,
-    steps,
-    stiffened,
-    straightened,
-    with_sensors,
 )
 from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed, nearest_axes
@@ -75,7 +56,6 @@ _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
-    """What there is to say of a model."""
     said = [
         *_stiffness(found),
         *_stated(found, stated),
@@ -101,8 +81,8 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
                      f"{'lower' if off < 0 else 'higher'} than its joints say: "
                      f"{_cause(found, own[0] / rigidity[0])}",
-                     "begin half a cell later" if half_cell(found) else "",
-                     beginning_later(found) or stiffened(found, {0: first_stiffness(found)})
+                     "begin half a cell later" if treatment.half_cell(found) else "",
+                     treatment.beginning_later(found) or treatment.first_softened(found)
                      )  # fmt: skip
     coarse = by_its_links(found) / at_its_tip(found) - 1
     if abs(coarse) > RIGIDITY:
@@ -116,8 +96,9 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
             yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
                          f"{joint.s / found.length:.2f} L, is {abs(off_by):.0%} too "
                          f"{'stiff' if off_by > 0 else 'soft'} beside its neighbours",
-                         edits=stiffened(found, {i: 1 / (joint.compliance * (1 + off_by))})
-                         )  # fmt: skip
+                         edits=treatment.stiffened(
+                             found, {i: 1 / (joint.compliance * (1 + off_by))}
+                         ))  # fmt: skip
     if tapers(found):
         yield Remark("note", "uniformity", f"EI goes from {rigidity[0]:.4g} at the clamp to "
                      f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
@@ -127,23 +108,25 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
                      "cantilever",
                      "take more links" if found.linear else "its springs stiffen as they turn",
-                     () if found.linear else stiffened(found, straight))  # fmt: skip
+                     () if found.linear else treatment.stiffened(found, straight))  # fmt: skip
     least = RIGIDITY * FORCE * as_intended(found) / found.length  # of a moment that matters
     past = _BENDS * max(j.cell for j in found.joints) / found.length - min(found.limits, default=9)
     if past * found.limit_stiffness > least:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
                      "degrees, less than a sweep bends it",
-                     edits=(*joints(found, limited="false"),))  # fmt: skip
+                     edits=(*treatment.joints(found, limited="false"),))  # fmt: skip
     stretch = found.stretch * FORCE * found.tip_rigidity / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
-        hard = Edit("edge", (("solref", hardest(found)), ("solimp", HARD)), (0,))
+        hard = Edit(
+            "edge", (("solref", treatment.hardest(found)), ("solimp", treatment.HARD)), (0,)
+        )
         yield Remark("fault", "edges", f"a pull of {FORCE:g} EI/L^2 stretches one {far}",
                      edits=(hard,))  # fmt: skip
     if found.friction_loss > _RUBS * as_intended(found) / found.length:
         yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
                      "in each: the vibrissa stays bent",
-                     edits=(*joints(found, frictionloss="0"),))  # fmt: skip
+                     edits=(*treatment.joints(found, frictionloss="0"),))  # fmt: skip
 
 
 def _cause(found: MeasuredBeam, first: float) -> str:
@@ -166,7 +149,7 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     scaled = {i: wanted_rigidity / own / joint.compliance for i, joint in enumerate(found.joints)}
     for what, measured, wanted, allowed, edits in (
         ("length", found.length, stated.length, _LENGTH, ()),
-        ("EI", own, wanted_rigidity, RIGIDITY, stiffened(found, scaled)),
+        ("EI", own, wanted_rigidity, RIGIDITY, treatment.stiffened(found, scaled)),
     ):
         off = measured / wanted - 1
         if abs(off) > allowed:
@@ -192,7 +175,7 @@ def _surface(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "radius", f"{worst.name!r} is {abs(step):.1e} L "
                      f"{'thicker' if step > 0 else 'thinner'} than a straight course from "
                      f"{start:.4g} to {end:.4g}: what touches it feels steps",
-                     "give all geoms one radius, or a straight taper", evened(found, off)
+                     "give all geoms one radius, or a straight taper", treatment.evened(found, off)
                      )  # fmt: skip
 
 
@@ -264,7 +247,7 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
         if sensor is None:
             missing = [w for w, one in (("force", found.force), ("torque", found.torque))
                        if one is None]  # fmt: skip
-            edits = with_sensors(found, *missing) if word == missing[0] else ()
+            edits = treatment.with_sensors(found, *missing) if word == missing[0] else ()
             yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa",
                          f"add a site at the clamp and <{word} site=.../>", edits)  # fmt: skip
             continue
@@ -294,7 +277,7 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
                          f"{sensor.name!r} is {lever:.3g} L away from where the vibrissa "
                          "begins" + ("; its moments are counted from there"
                                      if word == "torque" else ""),
-                         edits=at_clamp(sensor, found.length))  # fmt: skip
+                         edits=treatment.at_clamp(sensor, found.length))  # fmt: skip
 
 
 def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
@@ -309,7 +292,7 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
     if angle > _ROTATED:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is turned by "
                      f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep",
-                     edits=straightened(sensor))  # fmt: skip
+                     edits=treatment.straightened(sensor))  # fmt: skip
     if not np.array_equal(nearest, np.eye(3)):
         words = ", ".join(
             f"{'-' if row[k] < 0 else ''}{'xyz'[k]}"
@@ -327,7 +310,7 @@ def _flags(found: MeasuredBeam) -> Iterator[Remark]:
 
 
 def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
-    meeting_objects = contacts(found, contype="0", conaffinity="1")
+    meeting_objects = treatment.contacts(found, contype="0", conaffinity="1")
     through = [geom for geom in found.geoms if not geom.meets]
     if through and not {"contact", "constraint"}.intersection(dict(found.switched)):
         ends = (through[0].start / found.length, through[-1].end / found.length)
@@ -343,14 +326,14 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return
-    softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
+    softest = min(treatment.moving(found) or meeting, key=lambda geom: geom.stiffness)
     sinks = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
     if sinks > SINKS:
         depth = f"{sinks:.1e} L into the object"
         if sinks * found.length > 2 * softest.radius:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
         yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {FORCE:g} "
-                     f"EI/L^2 sinks {depth}", edits=hardened(found))  # fmt: skip
+                     f"EI/L^2 sinks {depth}", edits=treatment.hardened(found))  # fmt: skip
     hard, fraction = contact_stiffness(found), found.timestep / found.period
     explicit = found.integrator in _EXPLICIT
     hardest = _HARDEST_EXPLICIT / len(found.joints) ** 2 if explicit else _HARDEST
@@ -358,17 +341,17 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         where = f"{found.integrator} at steps" if explicit else "steps"
         yield Remark("fault", "contact", f"{hard:.2g} EI/L^3 is too hard for {where} of "
                      f"{fraction:.2g} T1: it chatters{' or diverges' if explicit else ''}",
-                     edits=hardened(found))  # fmt: skip
+                     edits=treatment.hardened(found))  # fmt: skip
     thickest = max(meeting, key=lambda geom: geom.margin)
     if abs(thickest.margin) > _RADIUS * found.length:
         yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
                      "anything touches, as if the vibrissa were so much thicker",
-                     edits=contacts(found, margin="0", gap="0"))  # fmt: skip
+                     edits=treatment.contacts(found, margin="0", gap="0"))  # fmt: skip
     rubs = max(geom.friction for geom in meeting)
     if rubs > 0 and found.cone == "pyramidal":
         which = ", MuJoCo's default," if rubs == 1 else ""
         yield Remark("fault", "contact", f"friction {rubs:g}{which} by a pyramidal cone chatters",
-                     edits=frictionless(found))  # fmt: skip
+                     edits=treatment.frictionless(found))  # fmt: skip
     elif rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "
                      'condim="1"')  # fmt: skip
@@ -387,16 +370,16 @@ def _steps(found: MeasuredBeam) -> Iterator[Remark]:
     fraction = found.timestep / found.period
     if found.timestep <= 0:
         yield Remark("fault", "time step", f"{found.timestep:g}: nothing ever moves",
-                     edits=steps(found))  # fmt: skip
+                     edits=treatment.steps(found))  # fmt: skip
     elif explicit and found.timestep > limit:
         yield Remark("fault", "time step", f"{found.timestep:g} is above {limit:.2g}, where "
                      f"{found.integrator} becomes unstable with such springs",
                      "shorten it, add armature, or take integrator=\"discrete\"",
-                     steps(found))  # fmt: skip
+                     treatment.steps(found))  # fmt: skip
     elif fraction > _LONGEST_STEP:
         yield Remark("fault", "time step", f"{found.timestep:g} is {fraction:.2g} of the first "
                      "period: steps leap over what the vibrissa does",
-                     edits=steps(found))  # fmt: skip
+                     edits=treatment.steps(found))  # fmt: skip
     of_its_mass = _FIRST * np.sqrt(found.mass * found.length**3 / found.tip_rigidity)
     turning = found.period_without_armature / of_its_mass
     if turning > _TURNING:
@@ -408,7 +391,7 @@ def _steps(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "armature", f"makes the first period {slower:.3g} times as long")
     if found.damping_ratio > 1:
         yield Remark("fault", "damping", f"{found.damping_ratio:.2g} times critical: the vibrissa "
-                     "lags behind the foot", edits=damped(found))  # fmt: skip
+                     "lags behind the foot", edits=treatment.damped(found))  # fmt: skip
 
 
 def _solver(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
@@ -417,4 +400,5 @@ def _solver(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     if found.undone > _MOST_UNDONE:
         yield Remark("fault", "solver", "stops before contacts hold: its tolerance counts in the "
                      f"mean inertia of all that moves, {found.undone:.1g} times what such a "
-                     "vibrissa's motion has", edits=solved(found, _LITTLE_UNDONE))  # fmt: skip
+                     "vibrissa's motion has",
+                     edits=treatment.solved(found, _LITTLE_UNDONE))  # fmt: skip

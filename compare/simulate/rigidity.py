@@ -1,16 +1,18 @@
 """The flexural rigidity that a measured model has along its beam, and shows at its tip."""
 
 import numpy as np
+from scipy.optimize import brentq
 
 from analytic import Beam
 from analytic.problem.arrays import Floats
-from compare.measure.cantilever import tip_of
+from analytic.solver.elastica import frame, span
 from mujoco_models.inspect.measured import Geom, MeasuredBeam
 
 _POINTS = 2001  # of an integral along the beam
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
 _LEAST_COMPLIANCE = 0.01  # relative to a cell; what is left of a smooth course of EI
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
+_ACROSS = np.array(np.pi / 2)  # slope of a contour that presses along x
 
 
 def smooth_rigidity(found: MeasuredBeam, at: Floats | None = None) -> Floats:
@@ -149,3 +151,20 @@ def is_curved(found: MeasuredBeam, stated: float = 0.0) -> bool:
     pieces = found.joints[0].s + found.length - found.joints[-1].s
     allowed = _CURVATURE + abs(stated) * pieces / 2
     return abs(found.natural_curvature - stated) * found.length > allowed
+
+
+def tip_of(loads: Floats) -> Floats:
+    """Where the tip of the inextensible elastica is: across, and how far it has come down.
+
+    It is the vibrissa whose tip is pressed by an upright wall without friction.
+    """
+    return np.array([_tip(np.sqrt(load)) for load in np.asarray(loads, dtype=float).tolist()])
+
+
+def _tip(root: float) -> tuple[float, float]:
+    """Of the root of P L^2/EI; the tip's rotation is found from it."""
+    turned = brentq(
+        lambda w: float(span(np.array(w), _ACROSS).q) - root, 1e-14, np.pi / 2 - 1e-14, xtol=1e-15
+    )
+    up, across = frame(span(np.array(turned), _ACROSS), _ACROSS)
+    return float(across) / root, 1 - float(up) / root

@@ -1,14 +1,16 @@
-"""The coarsest settings with a wanted error, by the parts of a budget, and what comes of them."""
+"""The coarsest settings, or the fastest motion, with a wanted error, and what comes of them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from analytic import Case, InputError, Readings, solve_sweep
 from compare.explain.budget import Budget, largest_rms
+from compare.explain.motion import THREE_SPEEDS
 from mujoco_models import simulate_sweep
 from mujoco_models.allowed import CONTACT_STIFFNESSES
+from mujoco_models.errors import DivergedError
 from mujoco_models.settings import Settings
 
 _FRACTION = 0.9  # of the target that is planned for; the rest is for what a power law leaves out
@@ -18,6 +20,10 @@ _BEAM = 0.8  # of what is left of its square; the facets get the rest, for they 
 # to be more, the faster where there are to be fewer.
 _MORE_FACETS, _FEWER_FACETS = 1, 2
 _SEGMENTS, _POINTS = (5, 1000), (100, 25_600)
+_TRIES = 8
+_CHATTER = 0.1  # fraction of the stations in contact; what is left of such a sweep says little
+_NEAR = 1.1  # a speed that is known to within a tenth is good enough
+_SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
 
 
 @dataclass(frozen=True)
@@ -32,11 +38,9 @@ class Followed:
 
     @property
     def reached(self) -> bool:
-        """Whether the measured error is at most the target."""
         return self.error <= self.target
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
         return {**asdict(self), "reached": self.reached}
 
 
@@ -86,3 +90,84 @@ def advised(found: Budget, runs: Mapping[str, Readings], target: float) -> tuple
         raise InputError("--target", target, least, remedy)
     chosen = replace(base, segments=segments, contour_points=points, contact_stiffness=stiffness)
     return chosen, error
+
+
+@dataclass(frozen=True)
+class Fastest:
+    """The fastest motion with a wanted error, and what was measured of it."""
+
+    target: float  # the wanted error: of the worst reading, rms relative to its largest magnitude
+    speed: float  # of the fastest sweep with at most that [L/T1]
+    error: float  # of that sweep; CPU time
+    seconds: float  # of that sweep; CPU time
+    at_rest: float  # what is left at rest
+    tried: dict[float, float]  # error by speed, of all sweeps
+
+
+def find_fastest(
+    exact: Readings,
+    runs: Mapping[str, Readings],
+    move: Callable[[float], Readings],
+    target: float,
+) -> Fastest:
+    """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
+    swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
+    error = {speed: _error(exact, readings) for speed, readings in swept.items()}
+    at_rest = _rms(exact, runs["rest"])
+    slowest, quickest = _SPEEDS
+    for _ in range(_TRIES):
+        good = [v for v in error if error[v] <= target]
+        bad = [v for v in error if not error[v] <= target]
+        low, high = max(good, default=None), min(bad, default=None)
+        if low is not None and low >= quickest:
+            break
+        if low is None or high is None or high <= low:
+            # As many times slower or faster as an error of first order in the speed asks for.
+            from_here = min(error) if low is None else max(error)
+            factor = target / error[from_here] if math.isfinite(error[from_here]) else 0.25
+            step = factor / 1.1 if low is None else factor * 1.1
+            speed = from_here * (
+                min(max(step, 0.1), 0.7) if low is None else min(max(step, 1.4), 4)
+            )
+        elif high / low <= _NEAR:
+            break
+        else:
+            speed = math.sqrt(low * high)
+        if speed < slowest:
+            break
+        speed = min(speed, quickest)
+        try:
+            swept[speed] = move(speed)
+        except DivergedError:
+            error[speed] = math.inf
+        else:
+            error[speed] = _error(exact, swept[speed])
+    good = [v for v in error if error[v] <= target]
+    if not good:
+        least = min(error.values())
+        raise InputError(
+            "--target", target, f"at least {least:.1e}, with {at_rest:.1e} left at rest",
+            "what is there at rest needs more segments, what is not a shorter time step, "
+            "stiffer contacts or less damping",
+        )  # fmt: skip
+    best = max(good)
+    seconds = float(swept[best].provenance["seconds"])
+    return Fastest(target, best, error[best], seconds, at_rest, dict(sorted(error.items())))
+
+
+def _error(exact: Readings, moved: Readings) -> float:
+    touched = (exact.table["phase"] != "free").to_numpy()
+    if (touched & ~moved.trusted).sum() > _CHATTER * touched.sum():
+        return math.inf
+    return _rms(exact, moved)
+
+
+def _rms(exact: Readings, candidate: Readings) -> float:
+    try:
+        return largest_rms(exact, candidate)
+    except InputError:  # no station in common
+        return math.inf
+
+
+def _speed(readings: Readings) -> float:
+    return float(readings.provenance["motion"]["speed"])

@@ -83,7 +83,6 @@ def contacts(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
 
 
 def joints(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
-    """Of all joints."""
     numbers = tuple(i for joint in found.joints for i in joint.numbers)
     return () if found.springs == "flex" else (Edit("joint", tuple(attributes.items()), numbers),)
 
@@ -143,9 +142,10 @@ def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     return Insert(site, own.body), Edit("sensor", (("site", "half-cell"),), numbers)
 
 
-def first_stiffness(found: MeasuredBeam) -> float:
-    """Of the first joint, such that the tip gives way as it is meant to."""
-    return float(joint_arms(found)[0] ** 2 / flexibility(found, 0.0, found.joints[0].cell))
+def first_softened(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """The first joint, such that the tip gives way as it is meant to."""
+    stiffness = joint_arms(found)[0] ** 2 / flexibility(found, 0.0, found.joints[0].cell)
+    return stiffened(found, {0: float(stiffness)})
 
 
 def held(found: MeasuredBeam) -> tuple[Edit, ...]:
@@ -176,7 +176,6 @@ def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
 
 
 def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
-    """Sensors at the clamp."""
     if not found.body:
         return ()
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)

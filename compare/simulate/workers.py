@@ -21,7 +21,6 @@ K = TypeVar("K", bound=Hashable)
 
 
 def available_cores() -> int:
-    """The number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):  # not on macOS, nor on Windows
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -59,7 +59,6 @@ def assert_agreement(
 
 
 def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = None) -> None:
-    """Raise AssertionError unless `comparison` agrees."""
     __tracebackhide__ = True
     if comparison.agrees:
         return

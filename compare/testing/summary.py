@@ -14,7 +14,6 @@ from compare.show.report import write_report
 def report(
     found: Comparison | SpatialComparison, folder: Path, name: str, body: Body | None = None
 ) -> dict[str, Any]:
-    """Write the report of one comparison."""
     write_report(found, folder / name, body=body)
     return {
         "name": name,

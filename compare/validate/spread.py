@@ -28,7 +28,6 @@ class Spread:
     alike: Floats
 
     def part(self, where: slice) -> "Spread":
-        """The same of some of the differences."""
         noise, alike = self.noise[where], self.alike[where]
         return Spread(self.names, self.modes[:, where], self.correlation, noise, alike)
 
@@ -43,7 +42,6 @@ class Spread:
         return {name: part / total if total > 0 else 0.0 for name, part in parts.items()}
 
     def variance(self) -> Floats:
-        """Variance of every difference by the modes."""
         return np.asarray(((self.correlation @ self.modes) * self.modes).sum(axis=0))
 
     def limits(self, scale: Mapping[str, float] | None = None) -> tuple[float, float]:

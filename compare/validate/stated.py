@@ -1,4 +1,4 @@
-"""Uncertainties that a user states: of the inputs of a case, and of the measured readings."""
+"""What may be uncertain, the inputs of a case and measured readings, and what a user states."""
 
 import math
 from collections.abc import Mapping
@@ -7,11 +7,36 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, InputError
+from analytic import CLAMP_READINGS, Case, InputError
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import unknown
 from analytic.problem.numbers import within
-from compare.validate.inputs import GAINS, INPUTS
+from analytic.problem.quantities import QUANTITIES
+
+GAINS = tuple(f"gain_{name}" for name in CLAMP_READINGS)
+"""Of each reading's sensor, relative: its calibration."""
+
+INPUTS = {name: one for name, one in QUANTITIES.items() if name != "clamp_compliance"}
+"""By name; of a clamp it is the stiffness that is stated."""
+
+
+def nominal(case: Case, name: str) -> float:
+    """An input's value in a case; not finite if the case has no such number."""
+    if name == "tip_radius" and case.beam.tip_radius is None:
+        return math.nan
+    return INPUTS[name].value(case)
+
+
+def possible(case: Case, name: str, error: float) -> float:
+    """An input's error that it can have: what would be negative has the other sign.
+
+    So friction that is 0 by the case and uncertain is at most as large as stated.
+    """
+    if name in GAINS or not INPUTS[name].positive:
+        return error
+    value = nominal(case, name)
+    return abs(value + error) - value
+
 
 Distribution: TypeAlias = Literal["normal", "uniform"]
 

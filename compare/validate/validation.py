@@ -56,7 +56,6 @@ class Difference:
         return self.error > self.limit
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds."""
         return {**asdict(self), "limit": self.limit, "resolved": self.resolved}
 
 

@@ -22,7 +22,6 @@ _LINE = 0.19  # inches
 
 
 def verified(rows: Sequence[Row]) -> Document:
-    """All that is said of them."""
     sources = {row.source for row in rows if row.state in ("all digits", "explained")}
     contact = {row.source for row in rows if row.contact} & sources
     tiles = [
@@ -69,7 +68,6 @@ def verdict(rows: Sequence[Row]) -> Verdict:
 
 
 def table(rows: Sequence[Row]) -> Table:
-    """One line a number."""
     lines = [
         (
             *(row.source, row.what, row.quoted, f"{row.ours:.{max(row.digits + 2, 5)}g}"),
@@ -83,7 +81,6 @@ def table(rows: Sequence[Row]) -> Table:
 
 
 def summary(rows: Sequence[Row]) -> Table:
-    """One line a source."""
     lines = []
     for name, group in groupby(rows, lambda row: row.source):
         found = list(group)
@@ -95,7 +92,6 @@ def summary(rows: Sequence[Row]) -> Table:
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """The differences, a line a number."""
     figure = Figure(figsize=(PAGE_WIDTH, 1.2 + _LINE * len(rows)), layout="constrained")
     ax = figure.subplots()
     places = range(len(rows))

@@ -226,7 +226,6 @@ def _number(value: float | None) -> str:
 
 
 def page(rows: Sequence[PeerRow]) -> Document:
-    """All that is said of them."""
     reasons = Items(list(dict.fromkeys(f"{row.peer}, {row.case}: {row.why}" for row in rows)))
     ran = sum(row.run is not None for row in rows)
     said = Verdict(ran == len(rows), f"{ran} of {len(rows)} numbers were made by their engines.")

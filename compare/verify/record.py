@@ -20,8 +20,6 @@ _MODELS: Mapping[str, Callable[..., rods.Parts]] = vars(rods) | vars(contacts)
 
 @dataclass(frozen=True)
 class Row:
-    """One number of a source."""
-
     source: str
     cite: str
     contact: bool  # whether the source is about contact or whiskers
@@ -41,7 +39,6 @@ class Row:
 
 
 def sources() -> list[dict[str, Any]]:
-    """All that is quoted."""
     file = Path(__file__).with_name("sources.toml")
     return list(tomllib.loads(file.read_text(encoding="utf-8"))["source"])
 

@@ -27,13 +27,13 @@ from compare.commands import terminal
 from compare.commands.options import option, words
 from compare.commands.output import output_folder
 from compare.commands.sweeping import sweep_file
-from compare.measure.contacts import contacts_by
 from compare.read.case import load_job
 from compare.read.job import Job
 from compare.sense.noise import with_noise
 from compare.show import style
 from compare.show.document import Table
 from compare.show.numbers import short
+from compare.study.work.metrics import contacts_by
 from mujoco_models import simulate_sweep
 
 INFORMED = "elastica-informed"

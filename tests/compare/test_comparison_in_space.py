@@ -17,11 +17,11 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
-from compare import SpatialTolerances, assert_agreement, compare
-from compare.align.frames import clamp_axes, components, from_frame
-from compare.explain.split_space import split_space
+from compare import SpatialTolerances, assert_agreement, compare, measure_budget
+from compare.align.frames import COMPONENTS, clamp_axes, components, from_frame
+from compare.explain.in_space import budget_in_space, changes_in_space
 from compare.show.spatial_page import spatial_summary, spatial_verdict
-from mujoco_models import SpatialSettings, simulate_space
+from mujoco_models import SpatialSettings
 from tests.compare.command import reported_again, vibrissa
 from tests.conftest import exact_sweep
 
@@ -60,7 +60,7 @@ def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
 def test_nothing_is_said_of_contacts_that_are_not_there(exact):
     """Neither tiles nor a table of nothing; the stations that each sweep trusts are counted."""
     found = compare(exact, changed(exact, status="lost"))
-    said = str([vars(block) for block in spatial_summary(found, None)])
+    said = str([vars(block) for block in spatial_summary(found)])
     assert "contacts apart" not in said
     assert "nan" not in said
     assert "candidate 20 lost" in found.worst.found
@@ -236,23 +236,25 @@ def test_planted_parts_are_found(exact, segments, stiffness):
         columns = {name: size * exact.values(name) for name in (*FORCE, *MOMENT)}
         return changed(exact, **columns)
 
-    settings = SpatialSettings(segments=segments, contact_stiffness=stiffness)
-    parts = split_space(exact, sweep(settings), settings, sweep)
-    assert parts.stations == exact.touching.sum()
-    share = parts.whole / (2 / segments**2 + 2e-3)
-    assert parts.discretisation == pytest.approx(2 / segments**2 * share, rel=1e-9)
-    assert parts.softness == pytest.approx(1e-3 * share, rel=1e-9)
-    assert parts.unexplained == pytest.approx(1e-3 * share, rel=1e-9)
+    changes = changes_in_space(SpatialSettings(segments=segments, contact_stiffness=stiffness))
+    found = budget_in_space(exact, {name: sweep(one) for name, one in changes.items()}, changes)
+    assert found.stations == exact.touching.sum()
+    planted = {"discretisation": 2 / segments**2, "softness": 1e-3, "unexplained": 1e-3}
+    for name in COMPONENTS:
+        share = found.disagreement[name] / (2 / segments**2 + 2e-3)
+        for part, size in planted.items():
+            assert found.parts[part][name].rms == pytest.approx(size * share, rel=1e-9)
 
 
 @pytest.mark.slow
 def test_the_parts_are_mostly_the_discretisation():
-    exact, settings = solve_space(CASE), SpatialSettings(segments=10)
-    base = simulate_space(CASE, settings)
-    parts = split_space(exact, base, settings, lambda chosen: simulate_space(CASE, chosen))
-    assert parts.discretisation == pytest.approx(parts.whole, rel=0.3)
-    assert parts.unexplained < 0.5 * parts.whole
-    assert parts.softness < 1e-4
+    found, _ = measure_budget(CASE, SpatialSettings(segments=10))
+    most = {name: max(one.rms for one in part.values()) for name, part in found.parts.items()}
+    whole = max(found.disagreement.values())
+    assert most["discretisation"] == pytest.approx(whole, rel=0.3)
+    assert most["unexplained"] < 0.5 * whole
+    assert most["softness"] < 1e-4
+    assert found.blame == "discretisation"
 
 
 @pytest.mark.slow
@@ -349,7 +351,7 @@ def test_the_report_of_a_run_again(tmp_path, request):
     assert vibrissa("report", "out", cwd=tmp_path).returncode == 0
     for name, content in (
         ("body.ply", b"ply\n"),
-        ("budget.json", b'{"whole": []}'),
+        ("budget.json", b'{"parts": []}'),
         ("mujoco-chain.parquet", b""),
         ("comparison.json", b'{"frame": "clamp"}'),
     ):

@@ -26,8 +26,6 @@ _TOP = 0.955  # of the heading
 
 
 class Part(NamedTuple):
-    """A part of the figure that moves."""
-
     moving: list[Artist]  # what is drawn anew at every station
     show: Callable[[int], None]  # moves to a station
 
@@ -90,7 +88,6 @@ def write_film(
 def _images(
     figure: Figure, parts: Sequence[Part], stations: Iterable[int], dpi: int
 ) -> Iterator[Image.Image]:
-    """A picture of each station."""
     moving = sorted((a for part in parts for a in part.moving), key=lambda a: a.zorder)
     for artist in moving:
         artist.set_animated(True)

@@ -69,7 +69,6 @@ class _Motion:
 
     @classmethod
     def of(cls, readings: Readings) -> "_Motion":
-        """The sweep that these readings show, in units of their beam."""
         length = readings.beam.length
         x, y = deflected_shapes(readings)
         return cls(

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from analytic.space import Body, SpatialReadings
-from compare.align.travel import travel_of
 from compare.show.animation.film import Part, framed, heading, write_film
 from compare.show.figures.over_foot import in_unit
 from compare.show.figures.space import COLOURS, LOADS, draw_scene, label_axes, upright
@@ -66,7 +65,7 @@ def _view(ax: Axes3D, one: SweepScene, other: SweepScene) -> Part:
 
 def _curves(ax: Axes, one: SpatialReadings, other: SpatialReadings, title: str) -> Part:
     """The components of force or moment: the reference's drawn out, the candidate's by a mark."""
-    travel = travel_of(one) / one.beam.length
+    travel = one.running_values / one.beam.length
     marks: list[Artist] = []
     values = []
     for name, colour in zip(LOADS[title], COLOURS, strict=True):

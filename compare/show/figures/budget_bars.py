@@ -8,26 +8,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from analytic import CLAMP_READINGS
-from compare.explain.budget import UNRESOLVED, Budget
-from compare.explain.convergence import fitted_orders
+from compare.explain.budget import UNRESOLVED
+from compare.explain.parts import Parted, fitted_orders
 from compare.show import style
 from compare.show.budgets import headline
 from compare.show.numbers import short
 
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
 _PANEL = (4.3, 3.1)  # inches
+_ACROSS = 3  # panels
 
 
-def picture(found: Budget) -> Figure:
-    """Draw all readings side by side, under a sentence that says what they show."""
+def picture(found: Parted) -> Figure:
+    """Draw all readings, three side by side, under a sentence that says what they show."""
     width, height = _PANEL
-    figure = Figure((width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained")
-    axes = figure.subplots(1, len(CLAMP_READINGS))
-    for ax, reading in zip(axes, CLAMP_READINGS, strict=True):
+    rows = len(found.disagreement) // _ACROSS
+    figure = Figure((width * _ACROSS * 0.85, rows * height + 0.4), layout="constrained")
+    axes = figure.subplots(rows, _ACROSS, squeeze=False)
+    for ax, reading in zip(axes.flat, found.disagreement, strict=True):
         _draw(ax, found, reading)
-    for ax in axes:
-        ax.tick_params(labelleft=ax is axes[0])
+        ax.tick_params(labelleft=ax in axes[:, 0])
         ax.set_xlabel("")
     said = "with its uncertainty; dashed: all of it; grey: may stay unexplained"
     figure.supxlabel(f"rms / largest magnitude, {said}", fontsize=style.SMALL)
@@ -35,14 +35,13 @@ def picture(found: Budget) -> Figure:
     return figure
 
 
-def bars(found: Budget, reading: str) -> Figure:
-    """Draw one reading."""
+def bars(found: Parted, reading: str) -> Figure:
     figure = Figure(figsize=_PANEL, layout="constrained")
     _draw(figure.subplots(), found, reading)
     return figure
 
 
-def _draw(ax: Axes, found: Budget, reading: str) -> None:
+def _draw(ax: Axes, found: Parted, reading: str) -> None:
     names = _order(found)
     rows = np.arange(len(names))[::-1] + 0.0
     rows[:-1] += 0.35  # what is unexplained stands apart
@@ -83,7 +82,7 @@ def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> N
     )  # fmt: skip
 
 
-def _order(found: Budget) -> list[str]:
+def _order(found: Parted) -> list[str]:
     """The parts by size, the unexplained last."""
     explained = [name for name in found.parts if name != "unexplained"]
     explained.sort(key=lambda name: -max(part.rms for part in found.parts[name].values()))

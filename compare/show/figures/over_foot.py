@@ -51,7 +51,6 @@ def foot(readings: Readings) -> Floats:
 
 
 def unit(readings: Readings | SpatialReadings, name: str) -> float:
-    """The unit that a clamp reading is drawn in."""
     beam = readings.beam
     return beam.moment_unit if name.startswith("moment") else beam.force_unit
 
@@ -71,7 +70,6 @@ def reading_label(readings: Readings, name: str) -> str:
 
 
 def foot_label(readings: Readings) -> str:
-    """What an axis of places along the sweep is called."""
     beam = readings.beam
     own = f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else ""
     return style.ALONG[readings.running].axis + own

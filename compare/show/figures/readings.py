@@ -72,7 +72,6 @@ def around_snap_off(comparison: Comparison, name: str) -> Figure:
 
 
 def reading_panel(comparison: Comparison, name: str) -> Figure:
-    """Draw a reading of both sweeps, and their difference."""
     figure = Figure(figsize=_PANEL)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_AXES)
     _draw_reading(upper, lower, comparison, name)
@@ -178,7 +177,6 @@ def validation_picture(comparison: Comparison, found: Validation) -> Figure:
 
 
 def passes_picture(passes: Sequence[Pass]) -> Figure:
-    """Draw the three readings of each pass."""
     figure, axes = stacked(passes[0].readings)
     for name, ax in axes.items():
         for i, one in enumerate(passes):

@@ -12,7 +12,6 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from analytic.problem.arrays import Floats
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
-from compare.align.travel import travel_of
 from compare.comparison import SpatialComparison
 from compare.show import style
 from compare.show.figures.over_foot import in_unit, key_below, phase_handles, unit
@@ -53,7 +52,7 @@ def sweep_in_space(scene: SweepScene, around: Floats | None = None) -> Figure:
     ax.plot(*upright(scene.contact).T, color=style.INK, marker="o", markersize=1.8, linestyle="")
     for i, (title, names) in enumerate(LOADS.items()):
         below = figure.add_subplot(grid[1, i])
-        travel = travel_of(readings) / readings.beam.length
+        travel = readings.running_values / readings.beam.length
         for name, colour in zip(names, COLOURS, strict=True):
             values = in_unit(readings, name)
             below.plot(travel, values, ".-", color=colour, markersize=2.5, label=name[-1])

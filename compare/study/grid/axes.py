@@ -16,8 +16,6 @@ MOST_RUNS = 1_000_000
 
 
 class Range(Table):
-    """Values from one end to the other."""
-
     # First and last value (``from``, ``to``); a text has a unit.
     low: int | float | str = Field(alias="from")
     # First and last value (``from``, ``to``); a text has a unit.
@@ -35,7 +33,6 @@ class Sample(Table):
     seed: int = Field(default=0, ge=0)  # the same seed draws the same points
 
     def draw(self, dimensions: int) -> Floats:
-        """Draw the points."""
         if self.method == "latin-hypercube":
             from scipy.stats import qmc  # slow to load, and few studies draw samples
 

@@ -57,7 +57,6 @@ class Base:
                 self.values[mesh] = self._path(self.values[mesh])
 
     def check_key(self, key: str, place: Sequence[str]) -> None:
-        """Check that a key can vary."""
         where = self._file.place(place)
         table, *inner = key.split(".")
         component = inner[1:]

@@ -139,7 +139,6 @@ class _AxisReader:
         return [self._base.tried(key, value, _place(key)) for value in values]
 
     def span(self, key: str, value: object) -> Range:
-        """A range as it is written."""
         try:
             return Range.model_validate(value)
         except ValidationError as error:

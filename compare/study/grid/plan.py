@@ -86,37 +86,6 @@ class Plan:
             packages.append("engines")
         return cls(study, versions | {"sources": sources_digest(*packages)})
 
-    def to_json(self) -> str:
-        """Write the plan as what `from_json` reads.
-
-        Returns
-        -------
-        str
-            JSON.
-        """
-        return TypeAdapter(Plan).dump_json(self, indent=1).decode()
-
-    @classmethod
-    def from_json(cls, text: str | bytes) -> "Plan":
-        """Read what `to_json` wrote.
-
-        Parameters
-        ----------
-        text : str or bytes
-            JSON.
-
-        Returns
-        -------
-        Plan
-            The same plan: its runs have the same ids.
-
-        Raises
-        ------
-        ValueError
-            If `text` is no plan.
-        """
-        return TypeAdapter(Plan).validate_json(text)
-
     @cached_property
     def _axes(self) -> tuple[Axis, ...]:
         return self.study.crossed
@@ -171,6 +140,10 @@ class Plan:
             }
         content = [described, sorted(study.record), study.keep_readings, self.versions]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+
+PLAN = TypeAdapter(Plan)
+"""Writes a plan as JSON, and reads it with the same ids."""
 
 
 @cache

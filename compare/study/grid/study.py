@@ -2,16 +2,66 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
-from pydantic import ConfigDict, Field
+import numpy as np
+from pydantic import AfterValidator, ConfigDict, Field
 
+from analytic import CLAMP_READINGS
 from compare.read.quantities import FileName, Table, validated
 from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import KeyPlace
 from compare.study.grid.axes import Axis, Sample
-from compare.study.grid.instrument import Estimator, SensorNoise
+
+if TYPE_CHECKING:
+    from analytic import Readings
+    from analytic.space import SpatialReadings
+
+
+class SensorNoise(Table):
+    """Gaussian noise of the sensor at the clamp."""
+
+    # Standard deviation, relative to each reading's largest magnitude.
+    relative: float = Field(default=0.0, ge=0, lt=1)
+    seed: int = Field(default=0, ge=0, lt=2**63)  # the row's column has 64 bits
+
+    def add_to(self, readings: "Readings | SpatialReadings") -> "Readings | SpatialReadings":
+        """Add the noise to a sweep; in space to the forces and the moments, each as one reading."""
+        if self.relative == 0:
+            return readings
+        from analytic.space import SpatialReadings  # pandas is slow to load, a check needs none
+        from compare.sense.noise import with_noise
+
+        if isinstance(readings, SpatialReadings):
+            return self._add_in_space(readings)
+        return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)
+
+    def _add_in_space(self, readings: "SpatialReadings") -> "SpatialReadings":
+        from analytic.space.problem.readings import FORCE, MOMENT
+
+        table, random = readings.table.copy(), np.random.default_rng(self.seed)
+        for names in (FORCE, MOMENT):
+            values = readings.values(*names)
+            size = self.relative * np.nanmax(np.abs(values))
+            table[[*names]] = values + size * random.normal(size=values.shape)
+        return replace(readings, table=table)
+
+
+def _known(name: str) -> str:
+    from analytic.from_clamp.earlier.methods import NAMES  # slow to load, and few studies name one
+
+    if name not in NAMES:
+        raise ValueError(f"a method is one of {', '.join(NAMES)}")
+    return name
+
+
+class Estimator(Table):
+    """The method that ``reconstruction`` is recorded of."""
+
+    # Name of a method, as `analytic.reconstruct` takes it.
+    method: Annotated[str, AfterValidator(_known)] = "elastica"
+
 
 Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
 RECORDS: tuple[Record, ...] = ("events", "disagreement", "reconstruction")
@@ -90,28 +140,22 @@ class Study:
 
 
 def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Turn tables into one with dotted keys."""
     return {
         f"{name}.{key}": value for name, table in tables.items() for key, value in table.items()
     }
 
 
 class PlanarRun(CaseFile):
-    """What a run in the plane needs beside its case."""
-
     noise: SensorNoise = SensorNoise()
     reconstruction: Estimator = Estimator()
 
 
 class SpatialRun(SpaceFile):
-    """What a run in space needs beside its case."""
-
     noise: SensorNoise = SensorNoise()
     reconstruction: Estimator = Estimator()
 
 
 def run_of(parameters: Mapping[str, Any]) -> PlanarRun | SpatialRun:
-    """Read a run from dotted keys."""
     tables: dict[str, dict[str, Any]] = {}
     for dotted, value in parameters.items():
         name, key, *component = dotted.split(".")
@@ -135,8 +179,6 @@ def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:
 
 
 class StudyTable(Table):
-    """The table ``[study]``."""
-
     name: FileName | None = None
     case: str | None = None
     beams: list[str] | None = None
@@ -166,5 +208,4 @@ class StudyFile(Table):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Those of a run, too."""
         return [*super().keys(), *RUN_TABLES]

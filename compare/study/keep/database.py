@@ -26,8 +26,6 @@ _LAYOUT = "CREATE TABLE IF NOT EXISTS runs (run PRIMARY KEY, done, content, chec
 
 
 class Database:
-    """A table with a row a run."""
-
     def __init__(self, folder: Path, warn: Warn, is_first: bool = False) -> None:
         """`is_first`: no study was here yet, so that a file may be one that is just being made."""
         self.path = folder / NAME
@@ -62,7 +60,6 @@ class Database:
         )
 
     def rows(self) -> Iterator[Row]:
-        """Read all rows, one at a time."""
         return (row for _, row in _rows(self._connection) if row is not None)
 
     @contextmanager

@@ -11,13 +11,14 @@ from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 
+import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from analytic import InputError
 from analytic.problem.files import whole_file, write_whole
-from compare.study.grid.plan import Plan
-from compare.study.keep.database import Database, Row, Warn
+from compare.study.grid.plan import PLAN, Plan
+from compare.study.keep.database import NAME, Database, Row, Warn, read
 from compare.study.work.perform import Result
 
 PLAN_FILE = "study.json"
@@ -32,7 +33,7 @@ class Store:
 
     def __init__(self, folder: Path, plan: Plan, warn: Warn) -> None:
         self._folder, self._plan = folder, plan
-        described = plan.to_json().encode()
+        described = PLAN.dump_json(plan, indent=1)
         with _in_one_line(folder):
             folder.mkdir(parents=True, exist_ok=True)
             file = folder / PLAN_FILE
@@ -58,7 +59,6 @@ class Store:
             self._database.close()
 
     def done(self) -> set[str]:
-        """Find out what need not be done again."""
         return self._done
 
     def add(self, result: Result) -> None:
@@ -126,3 +126,45 @@ def write_table(path: Path, rows: Callable[[], Iterable[Row]], plan: Plan) -> No
     ):
         for table in tables(rows(), plan, number_of):
             writer.write_table(joined([empty, table]))
+
+
+def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
+    """Read all that is stored of a study, also while it is under way.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study.
+    warn : callable
+        Takes a line about anything that is wrong with what is stored.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a run.
+
+    Raises
+    ------
+    InputError
+        If there is no study in `folder`.
+    """
+    if not (folder / NAME).is_file():
+        raise InputError("DIR", folder, "the folder of a study", "`vibrissa study` makes one")
+    plan = read_plan(folder)
+    found = joined(tables(read(folder, warn), plan, numbers(plan)))
+    # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
+    frame: pd.DataFrame = found.to_pandas(use_threads=False)
+    return frame.sort_values("run", ignore_index=True)
+
+
+def read_plan(folder: Path) -> Plan:
+    path = folder / PLAN_FILE
+    remedy = "start `vibrissa study FILE --out DIR` again: complete runs are kept"
+    try:
+        return PLAN.validate_json(path.read_bytes())
+    except OSError as error:
+        raise InputError("DIR", folder, f"a folder with a readable {PLAN_FILE}", remedy) from error
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(str(path), "damaged", "as the study wrote it", remedy) from error

@@ -21,8 +21,6 @@ _FEW_POINTS = 12  # parameters that advance together in more points than these a
 
 @dataclass(frozen=True)
 class StudyResults:
-    """The rows of a study."""
-
     plan: Plan  # what was to be done
     rows: pd.DataFrame  # A row a run of the plan, whatever its outcome
     # Those whose numbers count, with a column `WORST`: the largest of the clamp readings' rms
@@ -32,7 +30,6 @@ class StudyResults:
 
     @classmethod
     def of(cls, plan: Plan, rows: pd.DataFrame) -> "StudyResults":
-        """Take those rows that belong to a plan."""
         rows = rows[rows["run"].isin({run.id for run in plan})]
         done = rows[rows["outcome"] == "done"]
         readings = [name for name in done if re.fullmatch(r"disagreement_\w+_rms", str(name))]
@@ -50,7 +47,6 @@ class StudyResults:
 
     @property
     def sampled(self) -> tuple[str, ...]:
-        """The axes that were sampled together."""
         groups = [a.keys for a in self.plan.study.crossed
                   if len(a.keys) > 1 and len(a.points) > _FEW_POINTS]  # fmt: skip
         return tuple(key for keys in groups for key in keys if key in self.axes)

@@ -15,7 +15,6 @@ _POWER = 0.98  # of the variance of the logarithms that a power law has to expla
 
 
 def varied(found: StudyResults) -> str:
-    """Say what was varied."""
     said = []
     for axis in found.plan.study.axes:
         for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):

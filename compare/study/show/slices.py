@@ -28,7 +28,6 @@ class Line:
 
 
 def lines(found: StudyResults, axis: str, metric: str) -> list[Line]:
-    """Cut lines out of a study."""
     cut = []
     groups = [
         (beam, group)

@@ -22,7 +22,7 @@ from compare.show.document import (
 from compare.show.html import html
 from compare.show.page import png
 from compare.study.keep.database import Warn
-from compare.study.keep.reading import read_plan, read_rows
+from compare.study.keep.store import read_plan, read_rows
 from compare.study.show import pictures, tables
 from compare.study.show.results import Question, StudyResults, asked
 from compare.study.show.sentences import headline, varied
@@ -67,7 +67,6 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
 
 
 def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document:
-    """All that there is to say of a study."""
     study, questions = found.plan.study, asked(found)
     answers = {question.name: headline(found, question) for question in questions}
     done, planned = len(found.done), len(found.plan)

@@ -15,7 +15,6 @@ ONLY_IN_SPACE = tuple(name for name in COMPONENTS if name not in CLAMP_READINGS)
 
 
 def outcomes(found: StudyResults) -> pd.DataFrame:
-    """Count what became of the runs."""
     missing = len(found.plan) - len(found.rows)
     table = found.rows.groupby("outcome").agg(runs=("run", "size"), example=("reason", "first"))
     table = table.reset_index()

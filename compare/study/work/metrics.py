@@ -1,20 +1,21 @@
 """What a study records of a run: plain numbers, by name."""
 
 import numpy as np
+import pandas as pd
 
-from analytic import Direction, Events, Readings, find_events
+from analytic import Direction, Events, Readings, find_events, reconstruct, reconstruct_by_decision
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT
-from compare.measure.contacts import contacts_by
 from compare.read.tables import Physics
 
 _EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "back_start", "back_end", "snap_off")
 _EVENTS_IN_SPACE = {"touch": "touch", "slip_off": "slip-off", "release": "release"}
 _RECONSTRUCTION = ("reconstruction_rms", "reconstruction_max", "reconstruction_share")
+_EXACT = 1e-6  # of criterion (26), for readings without noise
+_SIGMAS = 4.0  # times the noise; the criterion has errors of its size
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
-    """Find the events of the sweep in closed form."""
     beam, profile, held = physics
     if direction == "right":
         beam, profile, held = beam.mirrored(), profile.mirrored(), held.mirrored()
@@ -24,7 +25,6 @@ def find(physics: Physics, direction: Direction = "left") -> Events:
 def events(
     found: Events, length: float, direction: Direction = "left"
 ) -> dict[str, float | bool | None]:
-    """Say where the events of a sweep are."""
     way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
     places = {n: x if x is not None and x.status == "ok" else None for n, x in places.items()}
@@ -83,3 +83,11 @@ def reconstruction(
         "reconstruction_max": float(miss.max()),
         "reconstruction_share": miss.size / int(touching.sum()),
     }
+
+
+def contacts_by(sensed: Readings, method: str, level: float) -> pd.DataFrame:
+    if method != "decision":
+        return reconstruct(sensed, method=method)
+    # Where noise makes an impossible force, the square root of the closed form is none.
+    with np.errstate(invalid="ignore"):
+        return reconstruct_by_decision(sensed, tolerance=max(_EXACT, _SIGMAS * level))

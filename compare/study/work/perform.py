@@ -1,21 +1,31 @@
-"""One run of a study: from its parameters to one flat row, whatever happens."""
+"""One run of a study, from its parameters to one flat row; what is known of many at once."""
 
 import os
 import platform
 import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 
-from analytic import InputError, Readings, solve_sweep
+from analytic import (
+    Beam,
+    Contour,
+    Events,
+    InputError,
+    Readings,
+    find_many_events,
+    solve_sweep,
+    solve_sweeps,
+)
 from analytic.problem.errors import require
+from analytic.problem.support import is_plain
 from analytic.space import SpatialReadings, solve_space
 from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
@@ -24,8 +34,69 @@ from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
 from compare.study.grid.study import PlanarRun, SpatialRun, Study, run_of
 from compare.study.work import metrics
-from compare.study.work.together import NOTHING, Known, known_of
 from mujoco_models import DivergedError
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of a run; what is None, the run finds itself, with its error if any."""
+
+    run: PlanarRun | None = None
+    events: Events | None = None  # of its sweep, of the mirrored one if the foot moves to the right
+    reference: Readings | None = None  # the closed form's sweep
+
+
+NOTHING = Known()
+
+
+def known_of(study: Study, parameters: Sequence[dict[str, Value]]) -> list[Known]:
+    """Read the cases of runs, and find the events of all and solve the sweeps of all at once.
+
+    Of runs in closed form, that is: beside a simulation it takes no time.
+    """
+    if study.in_space or study.beams or len(parameters) == 1:
+        return [NOTHING] * len(parameters)
+    given = {i: {**study.base, **one} for i, one in enumerate(parameters)}
+    runs = _where_possible(_read, given)
+    events: dict[int, Events] = {}
+    swept: dict[int, Readings] = {}
+    if "events" in study.record and (plain := _where_possible(_plain, runs)):
+        with suppress(Exception):
+            profiles, beams = zip(*plain.values(), strict=True)
+            events = dict(zip(plain, find_many_events(profiles, beams), strict=True))
+    if not study.events_only:
+        cases = _where_possible(lambda run: run.case(Path(), "run"), runs)
+        solved = zip(cases, solve_sweeps(cases.values()), strict=True)
+        swept = {i: found for i, found in solved if isinstance(found, Readings)}
+    return [Known(runs.get(i), events.get(i), swept.get(i)) for i in given]
+
+
+def _where_possible(function: Callable[[Any], T | None], given: Mapping[int, Any]) -> dict[int, T]:
+    """What a function makes of each; where it fails, the run will say."""
+    made: dict[int, T] = {}
+    for i, one in given.items():
+        with suppress(Exception):
+            if (found := function(one)) is not None:
+                made[i] = found
+    return made
+
+
+def _read(parameters: Mapping[str, Value]) -> PlanarRun | None:
+    run = run_of(parameters)
+    return run if isinstance(run, PlanarRun) else None
+
+
+def _plain(run: PlanarRun) -> tuple[Contour, Beam] | None:
+    """Contour and vibrissa of a sweep to the left that many are found of at once."""
+    if run.whisk is not None:
+        return None
+    beam, profile, held = run.physics(Path())
+    if not is_plain(beam, held):
+        return None
+    return (profile.mirrored() if run.sweep.direction == "right" else profile), beam
+
 
 Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
 Row: TypeAlias = dict[str, Any]
@@ -44,7 +115,7 @@ class Result:
 
 
 class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
-    """The run has used up its time."""
+    pass
 
 
 def perform_all(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:

@@ -12,8 +12,7 @@ import pytest
 
 from analytic import Readings
 from compare.commands.output import Ended, ended_by_signals
-from compare.study.keep.reading import read_rows
-from compare.study.keep.store import PLAN_FILE, TABLE_FILE
+from compare.study.keep.store import PLAN_FILE, TABLE_FILE, read_rows
 from tests.compare.processes import children, wait, wait_for_end
 from tests.compare.study.studies import COMMAND
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Readings
-from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.fit import fitted
-from compare.explain.parts import Shared
+from compare.explain.parts import Shared, convergence, fitted_orders
 from compare.explain.split import Split, split
 from tests.compare.synthetic import BEAM, EXACT, TOUCHING, at_rest, pattern, scaled, solved
 

@@ -10,10 +10,10 @@ import pytest
 from analytic import CLAMP_READINGS, Case, Readings, Sweep, circle, named_case, solve_sweep
 from analytic.problem.support import Support
 from compare.align.offset import without_offset
-from compare.measure.cantilever import tip_of
 from compare.measure.measurement import measure
 from compare.measure.repeats import repeats
 from compare.sense.noise import with_noise
+from compare.simulate.rigidity import tip_of
 from docs.figures.methods import as_believed
 from tests.compare.synthetic import BEAM, changed, solved
 

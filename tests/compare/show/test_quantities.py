@@ -53,7 +53,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     assert "50 mm" in foot_label(exact)
     units = {"force_x": "N", "force_y": "N", "moment_z": "N m"}
     assert [ax.get_ylabel() for ax in exact.plot()] == [f"{n} [{u}]" for n, u in units.items()]
-    print_comparison(found, None)
+    print_comparison(found)
     assert "2 mm" in capsys.readouterr().out
     exact.write(tmp_path / "a.parquet")
     assert Readings.read(tmp_path / "a.parquet").beam.si

@@ -11,7 +11,6 @@ import pytest
 from analytic import CLAMP_READINGS, InputError
 from compare.align.frames import COMPONENTS
 from compare.explain.split import Split
-from compare.explain.split_space import Parts
 from compare.read.runs import EngineOutcome, read_runs
 from compare.report import write_report
 from tests.compare.planted import planted
@@ -120,11 +119,11 @@ def test_a_run_in_space_is_a_row(tmp_path):
     content = {"verdict": "agrees", "phases": {"agreement": None}, "candidate": egg}
     content["disagreement"] = {name: {"rms": 4e-3} for name in COMPONENTS}
     content |= {"running": "clamp_angle", "snap_off": {"difference": 0.1}}
-    parts = Parts(whole=4e-3, discretisation=3e-3, softness=1e-3, unexplained=1e-5, stations=9)
     run = tmp_path / "runs" / "egg"
     run.mkdir(parents=True)
     (run / "comparison.json").write_text(json.dumps(content))
-    (run / "budget.json").write_text(json.dumps(parts.to_dict()))
+    (run / "budget.json").write_text(json.dumps(planted().to_dict()))
+    (run / "budget.png").touch()
     text = write_report(tmp_path / "runs", tmp_path / "out").path.read_text()
     assert text.count("<td>4.0e-3</td>") == len(COMPONENTS)
     assert "discretisation" in text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, InputError, Readings, Sweep, named_case, solve_sweep
-from compare.simulate.fastest import find_fastest
+from compare.simulate.target import find_fastest
 from mujoco_models import DivergedError
 
 EXACT = solve_sweep(replace(named_case("catenary"), sweep=Sweep(60)))

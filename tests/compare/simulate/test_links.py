@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.measure.cantilever import tip_of
 from compare.simulate.links import order_in_links, tips_of_chain
+from compare.simulate.rigidity import tip_of
 from mujoco_models import inspect_model, shipped_models
 from tests.mujoco_models.inspect.chains import Chain
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Sweep, named_case
-from compare.simulate.means import sweep_as_means
+from compare.simulate.moving import sweep_as_means
 from mujoco_models import Settings, simulate_sweep
 
 CASE = replace(named_case("parabola"), sweep=Sweep(13))

@@ -9,8 +9,7 @@ import pytest
 
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.keep.reading import read_rows
-from compare.study.keep.store import Store
+from compare.study.keep.store import Store, read_rows
 
 EVENTS_ONLY = """
 [study]

@@ -10,7 +10,7 @@ from analytic import Beam, InputError
 from analytic.space import FootPath, SpatialCase, reconstruct_space, solve_space, sphere
 from compare import compare
 from compare.study.grid.file import load_study
-from compare.study.grid.plan import Plan
+from compare.study.grid.plan import PLAN, Plan
 from compare.study.work.perform import perform, perform_all
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.study.studies import SIMULATED_IN_SPACE
@@ -59,7 +59,7 @@ def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
         assert row["stations_touching"] == exact.touching.sum()
         assert row["reconstruction_rms"] < 1e-12
     assert len({row["event_touch"] for row in rows}) == 3
-    back = Plan.from_json(plan.to_json())
+    back = PLAN.validate_json(PLAN.dump_json(plan))
     assert [run.id for run in back] == [run.id for run in plan]
 
 

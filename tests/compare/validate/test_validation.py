@@ -9,8 +9,8 @@ from scipy.signal import lfilter
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, named_case, solve_sweep
 from compare import Input, Uncertainties, compare, validate
 from compare.measure.measurement import measure
-from compare.validate.inputs import INPUTS
 from compare.validate.sensitivities import sensitivities
+from compare.validate.stated import INPUTS
 from tests.compare.validate.experiments import CASES, off
 
 NO_NOISE = dict.fromkeys(CLAMP_READINGS, 0.0)

@@ -7,7 +7,7 @@ import pytest
 
 from analytic import CASE_NAMES, InputError, named_case
 from compare.study.grid.file import load_study, shipped_studies
-from compare.study.grid.plan import Plan
+from compare.study.grid.plan import PLAN, Plan
 from compare.study.grid.study import run_of
 from tests.compare.study.studies import EVENTS_ONLY
 
@@ -170,7 +170,7 @@ def test_true_and_false_are_an_axis_where_they_mean_something(plan_of):
         axes.mujoco.planar = [true, false]
     """)
     assert [run["mujoco.planar"] for run in parameters(plan)] == [True, False]
-    assert list(Plan.from_json(plan.to_json())) == list(plan)
+    assert list(PLAN.validate_json(PLAN.dump_json(plan))) == list(plan)
 
 
 def test_a_plan_is_reached_anywhere_at_once(plan_of):

@@ -10,8 +10,7 @@ import pytest
 
 from analytic import InputError
 from compare.study.keep.database import NAME
-from compare.study.keep.reading import read_plan, read_rows
-from compare.study.keep.store import PLAN_FILE, TABLE_FILE, Store
+from compare.study.keep.store import PLAN_FILE, TABLE_FILE, Store, read_plan, read_rows
 from compare.study.work.perform import perform
 from tests.compare.study.studies import EVENTS_ONLY, fill, planned
 

@@ -13,8 +13,7 @@ import pytest
 
 from analytic import InputError, named_case, solve_sweep
 from compare.study.keep.database import NAME, Database
-from compare.study.keep.reading import read_rows
-from compare.study.keep.store import TABLE_FILE, Store, write_table
+from compare.study.keep.store import TABLE_FILE, Store, read_rows, write_table
 from compare.study.work.perform import Result, perform
 from tests.compare.study.studies import EVENTS_ONLY, fill
 
@@ -150,7 +149,7 @@ import os, sys
 from pathlib import Path
 import pandas, pyarrow.parquet
 from analytic import Readings
-from compare.study.keep.reading import read_rows
+from compare.study.keep.store import read_rows
 
 before = len(os.listdir("/proc/self/task"))
 assert len(read_rows(Path(sys.argv[1]), print)) == 1

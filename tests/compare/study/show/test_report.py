@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
+from compare.study.grid.plan import PLAN
 from compare.study.keep.database import NAME, Database
 from compare.study.show.results import WORST, StudyResults, asked
 from compare.study.show.sentences import headline, varied
@@ -136,7 +137,7 @@ def test_a_page_of_an_unfinished_study(plan_of, tmp_path):
         numbers = {"contact_length_minimum": 1.2 - 0.1 * number, "phase_b_exists": number > 2}
         database.add({"run": run.id, **done, **run.parameters, **numbers})
     database.close()
-    (tmp_path / "study.json").write_text(plan.to_json())
+    (tmp_path / "study.json").write_bytes(PLAN.dump_json(plan))
     warned = []
     page = write_report(tmp_path, warned.append).read_text()
     assert "4 of 8 runs are done" in page
@@ -149,7 +150,7 @@ def test_a_page_of_an_unfinished_study(plan_of, tmp_path):
 def test_nothing_done_says_why(plan_of, tmp_path):
     plan = plan_of(PHASE_B)
     Database(tmp_path, pytest.fail).close()
-    (tmp_path / "study.json").write_text(json.dumps(json.loads(plan.to_json())))
+    (tmp_path / "study.json").write_text(json.dumps(PLAN.dump_python(plan, mode="json")))
     with pytest.raises(InputError, match="a run that is done"):
         write_report(tmp_path, pytest.fail)
     (tmp_path / NAME).write_bytes(b"PAR1")

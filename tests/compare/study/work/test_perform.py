@@ -20,7 +20,7 @@ from analytic import (
     solve_sweep,
 )
 from compare import compare
-from compare.study.grid.instrument import SensorNoise
+from compare.study.grid.study import SensorNoise
 from compare.study.work import perform as running
 from compare.study.work.perform import perform
 from mujoco_models import Settings, simulate_sweep
