@@ -143,13 +143,14 @@ def estimate(
 
 
 def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> tuple[Floats, list[int]]:
-    """Sums of neighbours over the root of their number, which keeps white noise as it is."""
-    ends = np.cumsum(rows)
-    begins = [np.arange(end - n, end, block) for n, end in zip(rows, ends, strict=True)]
-    first = np.concatenate(begins)
+    """Means of neighbours times the root of their number, which keeps white noise as it is."""
+    counts = [-(-n // block) for n in rows]
+    each = zip(np.cumsum(rows) - rows, rows, counts, strict=True)
+    first = np.concatenate([begin + np.arange(count) * n // count for begin, n, count in each])
     number = np.diff(first, append=len(columns))
-    sums = np.add.reduceat(columns, first, axis=0)
-    return sums / np.sqrt(number)[:, None, None], [len(one) for one in begins]
+    # By one root for all: noise that remembers is not to jump where a block is one shorter.
+    means = np.add.reduceat(columns, first, axis=0) / number[:, None, None]
+    return means * np.sqrt(block), counts
 
 
 def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:

@@ -47,7 +47,7 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
     """A figure as the contents of a PNG file."""
-    return _drawn(figure, "png", dpi=dots_per_inch)
+    return _drawn(figure, "png", dpi=dots_per_inch, metadata={"Software": "vibrissa testbed"})
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
