@@ -23,6 +23,7 @@ _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep show
 _PRIOR = _LONG / _LONG.sum() / _WHITE
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _DRAWS = 400  # of the noise, over which the estimate is averaged
+_ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
 _REMEMBERED = 0.3  # correlation from station to station that is said
@@ -98,13 +99,16 @@ def estimate(
     design = np.concatenate([by_number, nuisances], axis=2)
     sizes = np.sqrt(np.einsum("ncm,ncm->m", design, design))
     sizes[sizes == 0] = 1.0
-    gram, root = _gram(np.concatenate([design / sizes, readings[:, :, None]], axis=2), rows)
+    columns = np.concatenate([design / sizes, readings[:, :, None]], axis=2)
+    block = len(columns) // _ENOUGH + 1  # stations of which one is made
+    columns, rows = _in_blocks(columns, rows, block)
+    gram, root = _gram(columns, rows)
     prior = np.zeros(len(sizes) + 1)
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
     normal = gram + np.diag(prior)
     # The noise is what each pass's own numbers leave: passes that differ are no noise.
     left, logarithm = _without_nuisances(normal, 0)
-    freedom = len(readings) - len(rows) * int(np.sum(prior[:-1] == 0))
+    freedom = len(columns) - len(rows) * int(np.sum(prior[:-1] == 0))
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
     likely = softmax(weights, axis=0)
@@ -124,7 +128,7 @@ def estimate(
     unexplained = np.append(-together[0], 1.0)
     left = unexplained @ common.sum(axis=0) @ unexplained
     determinants = root[:, None] + logarithm.sum(axis=0)
-    _, weights = _likely(left, determinants, len(readings))
+    _, weights = _likely(left, determinants, len(columns))
     size = sizes[:known]
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
@@ -132,10 +136,21 @@ def estimate(
 
     return Estimated(
         *scaled(together),
-        _described(likely, hum),
+        _described(likely, hum, block),
         tuple(scaled(one) for one in by_pass),
         float(logsumexp(weights, axis=0).sum()),
     )
+
+
+def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> tuple[Floats, list[int]]:
+    """Means of neighbours times the root of their number, which keeps white noise as it is."""
+    counts = [-(-n // block) for n in rows]
+    each = zip(np.cumsum(rows) - rows, rows, counts, strict=True)
+    first = np.concatenate([begin + np.arange(count) * n // count for begin, n, count in each])
+    number = np.diff(first, append=len(columns))
+    # By one root for all: noise that remembers is not to jump where a block is one shorter.
+    means = np.add.reduceat(columns, first, axis=0) / number[:, None, None]
+    return means * np.sqrt(block), counts
 
 
 def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
@@ -247,8 +262,9 @@ def _line(n: int, channels: int, period: float) -> Floats:
     return np.asarray(np.einsum("nw,cd->ncdw", waves, np.eye(channels)).reshape(n, channels, -1))
 
 
-def _described(likely: Floats, hum: float) -> NoiseFound:
+def _described(likely: Floats, hum: float, block: int) -> NoiseFound:
     rho, size = _GRID.T
+    rho, size = rho ** (1 / block), size / block  # of sums of what remembers longer than they are
     correlation = np.array((rho * size / (1 + size)) @ likely)
     memory = np.array([-1 / np.log(r) if r else 0.0 for r in rho])
     remembered = np.array(memory @ likely)

@@ -13,6 +13,7 @@ from types import FrameType
 import typer
 
 from analytic.problem.errors import InputError
+from analytic.problem.files import own_files
 
 _SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "ended by SIGTERM", "SIGHUP": "ended by SIGHUP"}
 _LONGEST = 100  # characters of a name
@@ -28,7 +29,7 @@ class Ended(KeyboardInterrupt):
 def output_folder(folder: Path) -> Iterator[Path]:
     """Make a folder, and see that it can be written to before any work is done.
 
-    What was made and stays empty is removed again.
+    What was made and stays empty is removed again. No file of somebody else's is replaced.
     """
     made: list[Path] = []
     try:
@@ -43,7 +44,8 @@ def output_folder(folder: Path) -> Iterator[Path]:
             "--out", folder, "a folder that can be written to", f"choose another ({reason})"
         ) from error
     try:
-        yield folder
+        with own_files():
+            yield folder
     finally:
         _remove_empty(made)
 

@@ -46,7 +46,7 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    return _drawn(figure, "png", dpi=dots_per_inch)
+    return _drawn(figure, "png", dpi=dots_per_inch, metadata={"Software": "vibrissa testbed"})
 
 
 def save_figure(figure: Figure, path: Path) -> Path:

@@ -116,6 +116,7 @@ def solid_ply(faces: Floats) -> str:
     header = [
         "ply",
         "format ascii 1.0",
+        "comment vibrissa testbed",
         f"element vertex {len(corners)}",
         *(f"property double {name}" for name in "xyz"),
         f"element face {len(faces)}",

@@ -247,7 +247,6 @@ def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, E
     jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
     if jittered is not None:
         fit = fit.of(jittered)
-        numbers, cost = fit.best_from(numbers)
     numbers, known = _knowing_the_noise(fit, numbers, 1.0 if stated and not jittered else 0.0)
     return fit, numbers, misfit, known
 
@@ -263,8 +262,8 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
     thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long
     coarse = fit if thinned.all() else fit.of(fit.measured.at(thinned))
     numbers, cost = _best(coarse)
-    if coarse is not fit:
-        numbers, cost = fit.best_from(numbers)
+    if coarse is not fit:  # the steps that know the noise go on from here
+        cost = float(np.sum(fit.misses(numbers) ** 2))
     for _ in range(_ROUNDS):
         expected = fit.expected(numbers)
         there = np.asarray(np.isfinite(expected).all(axis=0))

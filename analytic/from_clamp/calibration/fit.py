@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
 from analytic.from_clamp.calibration.unknowns import Number, Sought, Unknown
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.errors import InputError
@@ -21,6 +21,7 @@ _STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matte
 _SETTLED = 1e-8  # relative, of the sum of squares and of the numbers: far below any noise
 _AN_END = 1e-9  # a fit that stays inside comes so near to an end that is best
 _MOST_SWEEPS = 40  # of a fit, without those for derivatives
+_SOLVED = 200  # stations over the root of the noise: lines between them err by 10^-3 of it
 
 
 class LeastSquaresFit(ABC):
@@ -37,15 +38,19 @@ class LeastSquaresFit(ABC):
         self.lowest = np.array([kind.lowest for kind in kinds])
         self.highest = np.array([kind.highest for kind in kinds])
         self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
-        # All passes to one side are solved as one sweep, whose stations are in order.
+        # All passes to one side are solved as one sweep, whose stations are in order; where they
+        # are many, at some of them.
         ways = np.repeat(measured.ways, measured.rows)
-        self._sweeps = {}
+        share = float(np.min(measured.spread[1:] / np.abs(measured.readings).max(axis=1)))
+        self._sweeps: dict[Sweep, tuple[Integers, Integers]] = {}
         for way in get_args(Direction):
             sign = -1 if way == "left" else 1
             here = np.flatnonzero(ways == way)
             if here.size:
-                order = np.argsort(sign * measured.foot_x[here], kind="stable")
-                self._sweeps[Sweep(given.sweep.stations, direction=way)] = here[order]
+                here = here[np.argsort(sign * measured.foot_x[here], kind="stable")]
+                solved = np.linspace(0, len(here) - 1, min(len(here), int(_SOLVED / share**0.5)))
+                sweep = Sweep(given.sweep.stations, direction=way)
+                self._sweeps[sweep] = here, here[solved.astype(int)]
         self._last: tuple[Floats, list[Expected] | None] = np.empty(0), None
 
     @abstractmethod
@@ -131,25 +136,30 @@ class LeastSquaresFit(ABC):
         return found
 
     def _cases(self, numbers: Floats) -> list[tuple[Case, Floats]]:
-        """The cases of the sweeps to either side, and the foot positions of their stations."""
+        """The cases of the sweeps to either side, and the foot positions where they are solved."""
         sought = self.sought(numbers)
         foot_x = self.measured.foot_x - sought.offset
         late = {"left": -sought.lag, "right": sought.lag}
         return [
-            (replace(sought.case, sweep=sweep), foot_x[here] - late[sweep.direction])
-            for sweep, here in self._sweeps.items()
+            (replace(sought.case, sweep=sweep), foot_x[solved] - late[sweep.direction])
+            for sweep, (_, solved) in self._sweeps.items()
         ]
 
     def _in_passes(self, sweeps: Sequence[Floats]) -> Floats:
         """Readings of the sweeps to either side, pass by pass."""
-        found = np.empty_like(self.measured.readings)
-        for here, readings in zip(self._sweeps.values(), sweeps, strict=True):
-            found[:, here] = readings
+        found, foot_x = np.empty_like(self.measured.readings), self.measured.foot_x
+        for sweep, readings in zip(self._sweeps, sweeps, strict=True):
+            here, solved = self._sweeps[sweep]
+            found[:, solved] = readings
+            if len(solved) < len(here):
+                sign = -1 if sweep.direction == "left" else 1
+                places, nodes = sign * foot_x[here], sign * foot_x[solved]
+                found[:, here] = [np.interp(places, nodes, row) for row in readings]
         return found
 
     def _missed(self, found: Floats) -> Floats:
         filled = np.zeros_like(found)
-        for here in self._sweeps.values():
+        for here, _ in self._sweeps.values():
             readings, order = found[:, here], np.arange(len(here))
             known = np.isfinite(readings).all(axis=0)
             if known.any():

@@ -87,6 +87,7 @@ def write_ply(cloud: Cloud, path: str | Path) -> Path:
     header = [
         "ply",
         "format ascii 1.0",
+        "comment vibrissa testbed",
         f"element vertex {len(cloud.points)}",
         *(f"property double {name}" for name in names),
         "end_header",

@@ -114,3 +114,25 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path, page):
         done = vibrissa(*words, "--out", "out", cwd=tmp_path)
         done.refused(f"output = out/{page}: must be free, or from an earlier run")
     assert [path.name for path in (tmp_path / "out").iterdir()] == [page]
+
+
+@pytest.mark.slow
+def test_no_result_replaces_a_file_of_somebody_else(tmp_path):
+    """Whatever its kind, and whichever command; a second run replaces the files of the first."""
+    run = ("run", "catenary", "--engine", "exact", "--out", "out")
+    find = ("reconstruct", "out/analytic.parquet", "--fit", "circle", "--out", "out")
+    for words in (run, find, run, find):
+        assert vibrissa(*words, cwd=tmp_path).returncode < 2
+    for name, content, words in (
+        ("analytic.parquet", b"PAR1 of a rig PAR1", run),
+        ("points.csv", b"x,y\n1,2\n", find),
+        ("object.json", b'{"name": "mine"}', find),
+        ("reconstruction.png", b"PNG, Software Matplotlib", find),
+    ):
+        file = tmp_path / "out" / name
+        own = file.read_bytes()
+        file.write_bytes(content)
+        done = vibrissa(*words, cwd=tmp_path)
+        done.refused(f"output = out/{name}: must be free, or from an earlier run")
+        assert file.read_bytes() == content
+        file.write_bytes(own)
