@@ -4,10 +4,10 @@ Each hinge has the stiffness EI/h of the cell of length h that it stands for. Th
 cells' centres, half a cell from the clamp and from the tip, which makes the chain a second-order
 discretisation; the naive chain, whose first whole link is rigid in the clamp, is of first order.
 
-What is left of second order are three parts. Springs of "arc" take two off. Their moment is EI times
-the curvature of the arc that both links touch at their centres, (2 EI/h) tan(turn/2), where turns
-times EI/h are too soft by (curvature h)^2/12. And a sum over the centres of the cells misses
-h^2/24 of the slope of what it sums at either end: there is none at the end that is free, and the
+What is left of second order are three parts. Springs of "arc" take two off. Their moment is EI
+times the curvature of the arc that both links touch at their centres, (2 EI/h) tan(turn/2), where
+EI/h times the turn is too soft by (curvature h)^2/12. And a sum over the centres of the cells
+misses h^2/24 of the slope of what it sums at either end: at the free end there is none, and the
 first hinge is h/24 nearer the clamp. The third part is the contact's: its link is straight.
 """
 
