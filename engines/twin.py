@@ -72,9 +72,9 @@ def sweep_twin(
     from mujoco_models.sweep.walk import Walk
 
     case.require_upright(name)
-    if settings.beam != "chain" or not settings.planar:
+    if not settings.elsewhere:
         kind = settings.beam if settings.planar else f"{settings.beam} out of the plane"
-        allowed = "'chain' in the plane"
+        allowed = "'chain' in the plane, on linear springs"
         raise InputError(f"beam for {name}", repr(kind), allowed, "take --beam chain")
     begun, swept = time.process_time(), leftward(case)
     beam, obstacle = parts_at_rest(swept, settings, name)

@@ -11,7 +11,9 @@ from analytic.problem.errors import InputError, unknown
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
 ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
+SpringKind: TypeAlias = Literal["linear", "arc"]
 BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
+SPRINGS = get_args(SpringKind)
 CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 Limits: TypeAlias = dict[str, tuple[float, float, str]]
 """The least and the largest number that a field may be (integers: a whole one), what is usual."""

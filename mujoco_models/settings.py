@@ -11,10 +11,12 @@ from mujoco_models.allowed import (
     CLAMPS,
     CONTACT_STIFFNESSES,
     OBSTACLES,
+    SPRINGS,
     BeamKind,
     ClampKind,
     Limits,
     ObstacleKind,
+    SpringKind,
     check_numbers,
     check_word,
 )
@@ -83,6 +85,10 @@ class Settings(_Discretised):
         ``"primitive"``: a cylinder that osculates the contour where the vibrissa touches.
     planar : bool
         Whether the beam stays in the plane of the sweep, as in the theory, or may leave it.
+    springs : str
+        Of the planar chain: ``"linear"``, EI/h times a joint's turn, or ``"arc"``, EI times the
+        curvature of the arc between its two links, with the first joint h/24 nearer the clamp: of
+        second order, too, with less left where it bends much.
 
     Raises
     ------
@@ -93,7 +99,13 @@ class Settings(_Discretised):
     corner_radius: StrictFloat = 1e-6
     obstacle: ObstacleKind = "mesh"
     planar: StrictBool = True
-    _words: ClassVar[Words] = {"beam": BEAMS, "clamp": CLAMPS, "obstacle": OBSTACLES}
+    springs: SpringKind = "linear"
+    _words: ClassVar[Words] = {
+        "beam": BEAMS,
+        "clamp": CLAMPS,
+        "obstacle": OBSTACLES,
+        "springs": SPRINGS,
+    }
     _limits: ClassVar[Limits] = {
         **_limits(1000, 50_000, 1e-11),
         "corner_radius": (1e-9, 1e-3, "1e-6 is usual"),
@@ -108,6 +120,15 @@ class Settings(_Discretised):
                 "true or false",
                 "false lets the beam leave the plane",
             )
+        if self.springs == "arc" and not (self.beam == "chain" and self.planar):
+            raise InputError(
+                "mujoco.springs", "'arc'", "'linear'", "only the chain in the plane has arcs"
+            )
+
+    @property
+    def elsewhere(self) -> bool:
+        """Whether other engines have its beam: the chain in the plane, on linear springs."""
+        return self.beam == "chain" and self.planar and self.springs == "linear"
 
 
 def _no_cable(beam: _Beam) -> _Beam:

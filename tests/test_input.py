@@ -50,6 +50,7 @@ from mujoco_models import Settings, simulate_sweep
         (lambda: Settings(segments=1), "mujoco.segments = 1"),
         (lambda: Settings(contact_stiffness=-1), "mujoco.contact_stiffness = -1"),
         (lambda: Settings(corner_radius=0.0), "mujoco.corner_radius = 0.0"),
+        (lambda: Settings(beam="rod", springs="arc"), "mujoco.springs = 'arc'"),
         (
             lambda: simulate_sweep(Case(beam=Beam(radius=0.0), profile=circle(1, (0, 0.4)))),
             "beam.radius = 0",

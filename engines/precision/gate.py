@@ -31,11 +31,11 @@ def gate(
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
     """Have MuJoCo's states at rest evaluated, for several contact stiffnesses."""
-    if settings.beam != "chain" or not settings.planar:
+    if not settings.elsewhere:
         raise InputError(
             "beam for --float32",
             repr(settings.beam),
-            "'chain' in the plane",
+            "'chain' in the plane, on linear springs",
             "take --beam chain",
         )
     # The mirror image has the same numbers, but for the sign of x.

@@ -20,8 +20,9 @@ _ALONG = f"{np.pi / 2:.9g} 0 0"  # a cylinder's axis is z, a link's y
 
 def as_urdf(whisker: Whisker) -> str:
     """The chain without its carriage."""
-    if whisker.settings.beam != "chain":
-        raise InputError("--beam", whisker.settings.beam, "chain in URDF", "or write MJCF")
+    if not whisker.settings.elsewhere:
+        allowed = "a chain in the plane on linear springs in URDF"
+        raise InputError("--beam", whisker.settings.beam, allowed, "or write MJCF")
     model = whisker.spec().compile()
     root = Element("robot", name="whisker")
     root.append(Comment(f" {LACKING} "))

@@ -22,11 +22,12 @@ from analytic.solver.general.states import States, Vibrissa
 
 _PLACES = np.linspace(0, 1, 17)[1:]  # parts of the loaded span, and of the free end
 _FINE = np.linspace(0, 1, 257)[1:]  # the same where two contacts may be close to each other
+_PARTS = _FINE.reshape(32, 8)  # of spans between two contacts, each of which one look may prove
 _MARKS = np.linspace(0, 1, 33)  # of the places at which a vibrissa that varies is known
 _STRAIGHT = 1e-12  # 1/L; rounding of a natural curvature that vanishes
 _TANGENTS = 65
 _CHUNK = 500  # contacts at a time, so that their places and tangents find room
-_CHUNK_OF_TWO = 32
+_CHUNK_OF_TWO = 128
 _BESIDE = 0.13  # L; twice as far as places are apart, and the cubic errs by 1e-5 L
 _AT_ONCE = 2_000_000  # corners beside contacts, so that they find room
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
@@ -125,11 +126,45 @@ def bends_one_way(contact: States) -> Booleans:
 
 
 def _is_outside(contour: Contour, contact: States) -> Booleans:
-    shares = _PLACES if contact.inner is None else _FINE
-    parts = zip(_loaded(contact, shares), _free(contact, _PLACES), strict=True)
-    s, x, y = (np.concatenate(part) for part in parts)
+    s, x, y = _free(contact, _PLACES)
+    if contact.inner is None:
+        loaded = _loaded(contact, _PLACES)
+        s, x, y = (np.concatenate(part) for part in zip(loaded, (s, x, y), strict=True))
     taper = contact.vibrissa.unloaded.taper(s)
-    return np.asarray(_outside(contour, x, y, taper).all(axis=0))
+    outside = np.asarray(_outside(contour, x, y, taper).all(axis=0))
+    return outside if contact.inner is None else outside & _are_spans_outside(contour, contact)
+
+
+def _are_spans_outside(contour: Contour, contact: States) -> Booleans:
+    """Whether both spans between two contacts and the clamp are, which are of one radius.
+
+    A part of them is, if its ends lie beyond the same tangent by more than its sagitta; where no
+    tangent shows that, as next to the contacts, the part is looked at closely.
+    """
+    _, x, y = places(contact, np.append(0.0, _PARTS[:, -1])[:, None])
+    _, beyond = _beyond_tangents(contour, x, y)
+    beyond = beyond.reshape(2, len(_PARTS) + 1, len(contact.force), -1)
+    proven = np.minimum(beyond[:, :-1], beyond[:, 1:]).max(axis=3)
+    span, part, which = np.nonzero(~(proven > _sagittas(contact)[:, None]))
+    _, x, y = places(take(contact, which), _PARTS[part].T)
+    x, y = (np.where(span == 0, *np.split(values, 2)) for values in (x, y))
+    outside = np.ones(len(contact.force), dtype=bool)
+    outside[which[~_outside(contour, x, y, np.zeros_like(x)).all(axis=0)]] = False
+    return outside
+
+
+def _sagittas(contact: States) -> Floats:
+    """No less than those of parts of the outer span and of the inner one, shape (2, n)."""
+    inner, vibrissa = contact.inner, contact.vibrissa
+    assert inner is not None
+    couple, push = np.abs(vibrissa.friction) * vibrissa.radius, np.hypot(1, vibrissa.friction)
+    # Along a span kappa^2/2 - F cos(angle to F) stays, and F is no larger than both forces.
+    first = np.abs(vibrissa.natural_curvature) + couple * contact.force
+    outer = np.sqrt(first**2 + 4 * push * contact.force)
+    both = push * (contact.force + inner.force)
+    largest = np.array([outer, np.sqrt((outer + couple * inner.force) ** 2 + 4 * both)])
+    lengths = np.array([inner.apart, contact.arc_length - inner.apart]) / len(_PARTS)
+    return np.asarray(largest * lengths**2 / 8)
 
 
 def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
@@ -144,7 +179,7 @@ def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
 def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
     """Arc length and place of parts of the loaded span, shape (k, n)."""
     if contact.inner is not None:
-        return places(contact, shares)
+        return places(contact, shares[:, None])
     vibrissa, place = contact.vibrissa, contact.offset_point
     lean = np.arctan(vibrissa.friction)
     slope, push = contact.tip_angle - place.alpha - lean, np.hypot(1, vibrissa.friction)
@@ -200,15 +235,8 @@ def _outside(contour: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
 
 def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats, Floats]:
     """How far places are outside, and the contour parameter of what they are next to."""
-    low, high = contour.t_range
-    t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
-    alpha, xi, eta = contour.at(t)[:3]
-    ok = np.isfinite(xi) & np.isfinite(eta)
-    t, alpha, xi, eta = (values[ok] for values in (t, alpha, xi, eta))
+    t, beyond = _beyond_tangents(contour, x, y)
     seen = np.column_stack([x.ravel(), y.ravel()])
-    # One product for all: beyond[i, j] of place i and tangent j.
-    normals = np.stack([np.sin(alpha), -np.cos(alpha)])
-    beyond = seen @ normals - (xi * normals[0] + eta * normals[1])
     best = np.argmax(beyond, axis=1)
     gaps, nearest = beyond[np.arange(len(seen)), best], t[best]
     left = np.flatnonzero(gaps < taper.ravel() - _INSIDE)
@@ -227,3 +255,16 @@ def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats
         dx, dy = seen[left, 0] - point.xi, seen[left, 1] - point.eta
         gaps[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha)
     return gaps.reshape(x.shape), nearest.reshape(x.shape)
+
+
+def _beyond_tangents(contour: Contour, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Contour parameters of tangents, and how far places are beyond each, a row for each place."""
+    low, high = contour.t_range
+    t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
+    alpha, xi, eta = contour.at(t)[:3]
+    ok = np.isfinite(xi) & np.isfinite(eta)
+    t, alpha, xi, eta = (values[ok] for values in (t, alpha, xi, eta))
+    normals = np.stack([np.sin(alpha), -np.cos(alpha)])
+    # One product for all.
+    beyond = np.column_stack([x.ravel(), y.ravel()]) @ normals
+    return t, beyond - (xi * normals[0] + eta * normals[1])

@@ -86,18 +86,21 @@ class _Bent(NamedTuple):
 
 
 def places(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
-    """Arc length and place at shares of both spans, from their contacts on, shape (2 k, n)."""
+    """Arc length and place at shares of both spans, from their contacts on, shape (2 k, n).
+
+    Shares are of shape (k, n), or (k, 1) of all states.
+    """
     inner, vibrissa = contact.inner, contact.vibrissa
     assert inner is not None
-    begin, apart, along = contact.arc_length, inner.apart, shares[:, None]
+    begin, apart = contact.arc_length, inner.apart
     numbers = contact.point.alpha, contact.force, contact.excess
     given = np.array([*numbers, inner.point.alpha, inner.force, apart])
-    beyond = _outer(given, vibrissa, apart * along)
+    beyond = _outer(given, vibrissa, apart * shares)
     first = _inner(
-        given, vibrissa, _outer(given, vibrissa, apart).start.kappa, (begin - apart) * along
+        given, vibrissa, _outer(given, vibrissa, apart).start.kappa, (begin - apart) * shares
     )
     return (
-        np.concatenate([begin - apart * along, (begin - apart) * (1 - along)]),
+        np.concatenate([begin - apart * shares, (begin - apart) * (1 - shares)]),
         np.concatenate([contact.point.xi - beyond.x, inner.point.xi - first.x]),
         np.concatenate([contact.point.eta - beyond.y, inner.point.eta - first.y]),
     )

@@ -8,6 +8,7 @@ stiff a law is: the less friction there is the faster its direction follows the 
 first contact, where f rub' = G(rub, f), at once.
 """
 
+import operator
 from typing import NamedTuple
 
 import numpy as np
@@ -52,13 +53,13 @@ _SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
 _SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
 
 
-def _legendre(share: float) -> Floats:
+def _legendre(share: float) -> list[float]:
     """Legendre's polynomials at a share of a panel; NumPy's take twenty times as long for one."""
     x = 2 * share - 1
     found = [1.0, x]
     for n in range(1, _POINTS):
         found.append(((2 * n + 1) * x * found[n] - n * found[n - 1]) / (n + 1))
-    return np.array(found)
+    return found
 
 
 class Law(NamedTuple):
@@ -141,9 +142,10 @@ class Panel(NamedTuple):
 
     def share_at(self, travel: float, last: float) -> float:
         """Where the foot has come so far; it goes on until the last share, at least."""
+        travels = self.series[:, -1].tolist()
 
         def ahead(share: float) -> float:
-            return float(_legendre(share) @ self.series[:, -1]) - travel
+            return float(sum(map(operator.mul, _legendre(share), travels))) - travel
 
         if ahead(0.0) >= 0:
             return 0.0

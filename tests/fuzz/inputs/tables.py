@@ -16,7 +16,7 @@ KEYS = {
                 "right_radius", "left_radius", "height", "axes", "offset", "hull", "tolerance"),
     "sweep": ("stations", "start", "stop", "direction"),
     "mujoco": ("beam", "segments", "contour_points", "contact_stiffness", "corner_radius",
-               "clamp", "obstacle", "tolerance", "planar"),
+               "clamp", "obstacle", "tolerance", "planar", "springs"),
     "tolerances": ("rms", "max", "snap_off", "force_x", "nonsense"),
 }  # fmt: skip
 

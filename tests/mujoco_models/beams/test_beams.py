@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from analytic import CASE_NAMES, InputError, named_case
 from compare import compare
 from mujoco_models import Settings, available_beams, load_tip, simulate_sweep
+from mujoco_models.beams.chain import Chain
 from tests.conftest import exact_sweep, simulated_sweep
 
 BEAMS, LACKING = available_beams(), list(available_beams().missing)
@@ -21,9 +23,9 @@ EXACT = pd.read_csv(
 TIP_ERROR = {"chain": 3e-4, "cable": 5e-4, "rod": 7.5e-4}
 
 
-def tip_errors(beam, clamp, load):
+def tip_errors(beam, clamp, load, springs="linear"):
     exact = EXACT.loc[load, ["w_over_L", "u_over_L"]].to_numpy()
-    settings = [Settings(beam=beam, clamp=clamp, segments=int(n)) for n in SEGMENTS]
+    settings = [Settings(beam, int(n), clamp=clamp, springs=springs) for n in SEGMENTS]
     return np.array([np.linalg.norm(np.subtract(load_tip(load, s), exact)) for s in settings])
 
 
@@ -37,6 +39,26 @@ def test_cantilever_is_of_second_order(beam, load):
     errors = tip_errors(beam, "second-order", load)
     assert order(errors) >= 1.9
     assert errors[2] <= TIP_ERROR[beam]
+
+
+@pytest.mark.parametrize(("load", "share"), [(1, 0.3), (2, 0.55), (5, 0.75), (10, 0.8)])
+def test_arcs_leave_less(load, share):
+    """Of the second order the pull along the beam is left, which grows with the load."""
+    errors = tip_errors("chain", "second-order", load, "arc")
+    assert order(errors) >= 1.9
+    assert (errors < share * tip_errors("chain", "second-order", load)).all()
+
+
+def test_a_closed_circle_of_arcs_is_exact():
+    """Hinges that bend alike make links the sides about a circle, and the moment is its EI/R."""
+    chain = Chain(Settings(segments=12, springs="arc"), spacing=1.0)
+    turn = np.full(12, 2 * np.pi / 12)
+    model = chain.spec(0.005).compile()
+    data = mujoco.MjData(model)
+    chain.place(data, turn)
+    mujoco.mj_forward(model, data)
+    circumscribed = 2 * np.tan(np.pi / 12) * 12
+    np.testing.assert_allclose(-chain.moments(data.qfrc_passive), circumscribed, rtol=1e-3)
 
 
 @pytest.mark.parametrize("load", [1, 2, 5, 10])
@@ -79,8 +101,6 @@ def test_a_beam_of_another_version_is_refused(beam):
 @pytest.mark.skipif("rod" in LACKING, reason="MuJoCo 4 only")
 def test_rod_on_links_bends_as_a_flexcomp_does():
     """Moments of the flex bound to links are those of its forces on free vertices."""
-    import mujoco
-
     from mujoco_models.beams.rod import Rod
 
     rod = Rod(Settings(beam="rod", segments=8), spacing=1.0)

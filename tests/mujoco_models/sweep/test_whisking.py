@@ -21,7 +21,7 @@ from mujoco_models import Settings, available_beams, simulate_sweep
 CIRCLE, PARABOLA = circle(1.0, lowest=(0.0, 0.4)), parabola(0.5, 0.5)
 _P = np.linspace(-0.15, 1.8, 60)
 # Case, and the most that its readings may be off at N = 40, rms of the largest. Past the catenary
-# the vibrissa is bent by 3 rad in the end, a tenth of a radian at a joint of 40: that takes N = 56.
+# the vibrissa is bent by 3 rad in the end: that takes N = 56, or arcs.
 CASES = {
     "catenary": (named_case("whisk-catenary"), 4e-3),
     "circle": (named_case("whisk-circle"), 2e-3),
@@ -32,13 +32,15 @@ CASES = {
     "curved": (Case(Beam(natural_curvature=-0.3), CIRCLE, Whisk(0.4, -0.5, 1.95, 60)), 2e-3),
     "soft clamp": (Case(Beam(), PARABOLA, Whisk(0.3, -0.8, 1.9, 60), clamp_stiffness=4.0), 2e-3),
 }
+ARCS = {"catenary": 1.2e-3, "moves and turns": 1e-3}  # likewise; observed 9.7e-4 and 7.3e-4
 
 
 @cache
-def swept(name, segments):
+def swept(name, segments, springs="linear"):
     """How far both are apart: rms over the largest reading, and snap-off; stations near it left."""
     case = CASES[name][0]
-    exact, found = solve_sweep(case), simulate_sweep(case, Settings(segments=segments))
+    exact = solve_sweep(case)
+    found = simulate_sweep(case, Settings(segments=segments, springs=springs))
     assert (found.table["status"] == "ok").all()
     away, at = None, exact.values(exact.running)
     kept = exact.trusted
@@ -98,11 +100,15 @@ def test_a_clamp_that_turns_on_leaves_the_object_behind_it():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
-def test_order_and_closed_form(name):
-    coarse, middle, fine = (swept(name, segments)[0] for segments in (20, 40, 80))
-    assert middle < CASES[name][1]
-    assert fine < CASES[name][1] / 3.5
+@pytest.mark.parametrize(
+    ("name", "springs", "limit"),
+    [(name, "linear", limit) for name, (_, limit) in CASES.items()]
+    + [(name, "arc", limit) for name, limit in ARCS.items()],
+)
+def test_order_and_closed_form(name, springs, limit):
+    coarse, middle, fine = (swept(name, segments, springs)[0] for segments in (20, 40, 80))
+    assert middle < limit
+    assert fine < limit / 3.5
     assert 1.6 < np.log2(coarse / fine) / 2 < 2.4
-    exact, away = solve_sweep(CASES[name][0]), swept(name, 80)[1]
-    assert away is None or away < 1e-3, exact.snap_off
+    away = swept(name, 80, springs)[1]
+    assert away is None or away < 1e-3

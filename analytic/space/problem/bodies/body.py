@@ -8,6 +8,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]  # of x, y and z, in turn
+_AXES = np.eye(3)
 
 
 class Spot(NamedTuple):
@@ -126,10 +127,9 @@ def sphere_grid() -> Floats:
 
 def across(normal: Floats) -> Floats:
     """Two unit vectors that span the plane normal to a vector."""
-    axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]
-    first = cross(axis, normal)
-    first /= np.linalg.norm(first, axis=-1, keepdims=True)
-    return np.stack([first, cross(normal, first)], axis=-2)
+    first = cross(_AXES[np.abs(normal).argmin(axis=-1)], normal)
+    first /= np.sqrt((first * first).sum(axis=-1, keepdims=True))
+    return np.concatenate([first[..., None, :], cross(normal, first)[..., None, :]], axis=-2)
 
 
 def cross(a: Floats, b: Floats) -> Floats:
