@@ -2,9 +2,9 @@
 
 import math
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
@@ -12,8 +12,11 @@ from analytic.problem.arrays import Floats
 from analytic.problem.readings import Readings
 from analytic.problem.support import is_plain, support_of
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-def certify(readings: Readings) -> pd.DataFrame:
+
+def certify(readings: Readings) -> "pd.DataFrame":
     """How well each station meets its boundary conditions and the balance of moments.
 
     The clamp's force and moment are marched along the elastica by a Runge-Kutta method up to the
@@ -140,4 +143,6 @@ def certify(readings: Readings) -> pd.DataFrame:
         boundary[two], balance[two] = misses_of_two(
             read, friction, tip_radius, natural, compliance, span
         )
+    import pandas as pd  # slow to load, and a sweep that is not certified needs none of it
+
     return pd.DataFrame({"residual_boundary": boundary, "residual_moment": balance})

@@ -6,7 +6,6 @@ from importlib.metadata import version
 
 from analytic.problem.case import Case
 from analytic.problem.readings import Readings, solved_readings
-from analytic.problem.table import mirrored_columns
 from analytic.solver.columns import ReadingColumns
 
 Points = Mapping[str, float | None]
@@ -15,10 +14,13 @@ Points = Mapping[str, float | None]
 
 def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: bool) -> Readings:
     """The readings of a case whose sweep to the left, or its mirror image's, is solved."""
-    own = columns if case.direction == "left" else mirrored_columns(columns)
+    if case.direction == "right":
+        from analytic.problem.table import mirrored_columns  # slow to load, and few sweeps need it
+
+        columns = mirrored_columns(columns)
     places = {n: None if x is None else case.running_at(x) for n, x in events.items()}
     record = partial(_provenance, case, places)
-    return solved_readings(own, case.beam, "analytic", record, places["snap_off"], finite)
+    return solved_readings(columns, case.beam, "analytic", record, places["snap_off"], finite)
 
 
 def _provenance(case: Case, events: Points) -> dict[str, object]:

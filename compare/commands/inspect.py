@@ -124,11 +124,14 @@ def _path(model: str) -> Path:
 
 
 def _of_a_file(path: Path, names: dict[str, str | None], beam: Path | None) -> "Inspection":
-    from compare.read.tables import read_beam
     from compare.simulate.inspection import Inspection
     from mujoco_models import inspect_model
 
-    stated = None if beam is None else read_beam(beam)[0]
+    stated = None
+    if beam is not None:
+        from compare.read.tables import read_beam
+
+        stated = read_beam(beam)[0]
     return Inspection(inspect_model(path, **names), stated)
 
 

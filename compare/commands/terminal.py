@@ -6,10 +6,8 @@ Lengths are printed in units of the vibrissa's length L, whatever the units of t
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-from matplotlib.figure import Figure
 from rich import box
 from rich.console import Console, JustifyMethod
 from rich.measure import Measurement
@@ -26,7 +24,10 @@ from rich.text import Text as RichText
 
 from analytic.problem.files import write_whole
 from compare.show.document import Block, Items, Table, Text, Verdict
-from compare.show.page import as_json, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
 
 _LONGEST = 24  # characters that are never folded
 
@@ -65,17 +66,24 @@ def console() -> Console:
     return Console(highlight=False)
 
 
-def keep(path: Path, content: str | bytes | Mapping[str, Any] | pd.DataFrame | Figure) -> None:
+def keep(path: Path, content: "str | bytes | Mapping[str, Any] | DataFrame | Figure") -> None:
     """Write a text, a JSON file of numbers by name, a table as CSV, or a picture."""
+    if not isinstance(content, str | bytes):
+        content = _as_file(content)
+    print_written(write_whole(path, content))
+
+
+def _as_file(content: "Mapping[str, Any] | DataFrame | Figure") -> str | bytes:
+    from matplotlib.figure import Figure  # slow to load, and a text needs none of it
+
+    from compare.show.page import as_json, png
+
     match content:
         case Figure():
-            print_written(save_figure(content, path))
-        case pd.DataFrame():
-            print_written(write_whole(path, content.to_csv(index=False)))
-        case str() | bytes():
-            print_written(write_whole(path, content))
-        case _:
-            print_written(write_whole(path, as_json(content)))
+            return png(content)
+        case Mapping():
+            return as_json(content)
+    return str(content.to_csv(index=False))
 
 
 def show(*blocks: Block) -> None:

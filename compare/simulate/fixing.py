@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,7 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
     return Fixed(files, tuple(done), inspection)
 
 
+@cache
 def stop_of(found: MeasuredBeam) -> float | None:
     """Where the foot is as the vibrissa would leave the plane of the sweep; None if it cannot.
 

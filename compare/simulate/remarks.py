@@ -1,7 +1,6 @@
 """What a user should know of a model that was measured: faults, and notes."""
 
 from collections.abc import Iterator
-from typing import Literal
 
 import numpy as np
 
@@ -212,19 +211,15 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
         yield Remark("note", "medium", f"a density of {density:g}, a viscosity of {viscosity:g} "
                      f"and a wind of {wind:g} act on vibrissa and foot, not in theory")  # fmt: skip
     strength = float(np.linalg.norm(found.gravity))
-    if strength > 0:
-        sag = found.sag / found.length
-        weight = found.weight * found.length**2 / found.tip_rigidity
-        kind: Literal["fault", "note"] = "note"
-        if sag > _SAG or weight > RIGIDITY * FORCE:
-            kind = "fault"
-        read = (
-            ""
-            if found.force is None
-            else (f", and the force sensor reads {weight:.2g} EI/L^2 of it before anything touches")
-        )
-        yield Remark(kind, "gravity", f"{strength:.3g} bends the vibrissa by {sag:.1e} L at the "
-                     f"tip{read}", "switch it off: a model of your own is compared without",
+    sag, weight = found.sag / found.length, found.weight * found.length**2 / found.tip_rigidity
+    said = []
+    if sag > _SAG:
+        said.append(f"bends the vibrissa by {sag:.1e} L at the tip")
+    if weight > RIGIDITY * FORCE:
+        said.append(f"puts {weight:.2g} EI/L^2 on the force sensor before anything touches")
+    if said:
+        yield Remark("fault", "gravity", f"{strength:.3g} {' and '.join(said)}",
+                     "switch it off: a model of your own is compared without",
                      edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
 
 
@@ -321,7 +316,7 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     for pair in found.self_contacts[:3]:
         own = all(name in {geom.name for geom in found.geoms} for name in pair.split(" and "))
         yield Remark("fault", "contact", f"{pair} touch before anything moves",
-                     "exclude the pair" if own else "begin farther away",
+                     "exclude the pair" if own else "exclude the pair, or begin farther away",
                      meeting_objects if own else ())  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:

@@ -1,5 +1,7 @@
 """The flexural rigidity that a measured model has along its beam, and shows at its tip."""
 
+from functools import cache
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -22,18 +24,22 @@ def smooth_rigidity(found: MeasuredBeam, at: Floats | None = None) -> Floats:
     in s with the least sum of deviations, over all joints but the first and the last: these stand
     for pieces of beam of other lengths, as the clamp and the tip are modelled.
     """
+    wanted = np.array([joint.s for joint in found.joints]) if at is None else at
+    return np.asarray(np.polyval(_root_along(found), wanted / found.length) ** 4)
+
+
+@cache
+def _root_along(found: MeasuredBeam) -> Floats:
+    """The terms of that parabola, from the highest."""
     s = np.array([joint.s for joint in found.joints]) / found.length
     root = np.array([joint.flexural_rigidity for joint in found.joints]) ** 0.25
     inner = slice(1, -1) if len(s) > 4 else slice(None)
-    order = 3 if len(s) > 6 else 1
-    terms = np.vander(s, order)
-    weights = np.ones(len(s[inner]))
+    terms, root = np.vander(s, 3 if len(s) > 6 else 1)[inner], root[inner]
+    weights, most = np.ones(len(root)), root.max()
     for _ in range(50):
-        fit = np.linalg.lstsq(weights[:, None] * terms[inner], weights * root[inner], rcond=None)[0]
-        off = np.abs(root[inner] - terms[inner] @ fit)
-        weights = 1 / np.sqrt(np.maximum(off, 1e-9 * root.max()))
-    wanted = s if at is None else at / found.length
-    return np.asarray((np.vander(wanted, order) @ fit) ** 4)
+        fit = np.linalg.lstsq(weights[:, None] * terms, weights * root, rcond=None)[0]
+        weights = 1 / np.sqrt(np.maximum(np.abs(root - terms @ fit), 1e-9 * most))
+    return np.asarray(fit)
 
 
 def as_intended(found: MeasuredBeam) -> float:

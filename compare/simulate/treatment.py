@@ -136,7 +136,7 @@ def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     if not (sensors and half_cell(found) and sensors[-1].body):
         return ()
     own = sensors[-1]
-    at = _text(own.clamp + half_cell(found) * own.along, found.length)
+    at = _place(own.clamp + half_cell(found) * own.along, found.length)
     site = f'<site name="half-cell" pos="{at}" quat="{_text(own.quaternion)}"/>'
     numbers = tuple(sensor.number for sensor in sensors)
     return Insert(site, own.body), Edit("sensor", (("site", "half-cell"),), numbers)
@@ -172,7 +172,7 @@ def straightened(sensor: Sensed) -> tuple[Edit, ...]:
 
 def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
     """A sensor's site where the vibrissa begins."""
-    return (Edit("site", (("pos", _text(sensor.clamp, length)),), (sensor.site,)),)
+    return (Edit("site", (("pos", _place(sensor.clamp, length)),), (sensor.site,)),)
 
 
 def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
@@ -187,9 +187,8 @@ def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
 
 def _site(found: MeasuredBeam, name: str) -> Insert:
     """Where the vibrissa should begin, along the axes of the sweep."""
-    at = (found.frame[0] + half_cell(found) * found.frame[2]) / found.length
-    place = " ".join(f"{x:.6g}" for x in np.round(at, 9) * found.length + 0.0)
-    xy = " ".join(f"{x:.9g}" for x in np.round(found.frame[1:3].ravel(), 9) + 0.0)
+    place = _place(found.frame[0] + half_cell(found) * found.frame[2], found.length)
+    xy = _text(found.frame[1:3].ravel())
     return Insert(f'<site name="{name}" pos="{place}" xyaxes="{xy}"/>', found.body)
 
 
@@ -211,6 +210,11 @@ def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:
     )
 
 
-def _text(numbers: Floats, unit: float = 1.0) -> str:
+def _text(numbers: Floats) -> str:
     """Without what rounding leaves of zeros."""
-    return " ".join(f"{x:.9g}" for x in np.round(numbers / unit, 9) * unit + 0.0)
+    return " ".join(f"{x:.9g}" for x in np.round(numbers, 9) + 0.0)
+
+
+def _place(place: Floats, length: float) -> str:
+    """The same of a place on a body."""
+    return " ".join(f"{x:.6g}" for x in np.round(place / length, 9) * length + 0.0)

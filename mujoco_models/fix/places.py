@@ -16,7 +16,7 @@ class Places:
     """From numbers in a compiled model to elements of its file."""
 
     def __init__(self, model: mujoco.MjModel, root: Element) -> None:
-        self._model, self.root = model, root
+        self.model, self.root = model, root
         self._found: dict[tuple[str, int], Element] = {}
         self._class_of: dict[int, str] = {}  # by the identity of an element
         worlds = [child for child in root.children if child.tag == "worldbody"]
@@ -42,7 +42,7 @@ class Places:
         tag = _MANY.get(kind, "")
         found = [e for e in self.root.below() if e.tag == tag]
         if len(found) > 1 and kind in ("geom", "joint"):
-            name = getattr(self._model, kind)(number).name
+            name = getattr(self.model, kind)(number).name
             found = [e for e in found if name.startswith(e.attributes.get("prefix") or "\0")]
         return found[0] if len(found) == 1 else None
 
@@ -58,7 +58,7 @@ class Places:
 
     def _walk(self, body: int, inside: list[tuple[Element, str]]) -> None:
         """What is in a body's own elements, with the class that each has by default."""
-        model = self._model
+        model = self.model
         for element, inherited in inside:
             self._class_of[id(element)] = element.attributes.get("class", inherited)
         for kind, tags, bodies, named in (
@@ -95,10 +95,11 @@ class Places:
 
 
 def _inside(element: Element, inherited: str) -> Iterator[tuple[Element, str]]:
-    """Elements of a body, those in its frames too, with the class that they inherit."""
+    """Elements of a body, those in its frames and copies too, with the class that they inherit."""
     for child in element.children:
-        if child.tag == "frame":
-            yield from _inside(child, child.attributes.get("childclass", inherited))
+        if child.tag in ("frame", "replicate"):
+            for _ in range(int(child.attributes.get("count", 1))):
+                yield from _inside(child, child.attributes.get("childclass", inherited))
         else:
             yield child, inherited
 

@@ -7,8 +7,6 @@ from xml.parsers import expat
 
 from analytic.problem.errors import InputError
 
-_SECTIONS = ("frame",)  # what a body's elements may stand in without being another's
-
 
 @dataclass
 class Element:
@@ -20,14 +18,6 @@ class Element:
     start: int  # of its start tag, in bytes
     children: list["Element"] = field(default_factory=list)
     end: int = 0  # of its end tag, or of itself if it has none
-
-    def all(self, tag: str) -> Iterator["Element"]:
-        """Elements of that kind below it, but for those of bodies and other defaults in it."""
-        for child in self.children:
-            if child.tag == tag:
-                yield child
-            elif child.tag in _SECTIONS:
-                yield from child.all(tag)
 
     def below(self) -> Iterator["Element"]:
         """It and all that is in it, in the order of the text."""

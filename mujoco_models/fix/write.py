@@ -74,12 +74,16 @@ class Texts:
         if None in found:
             raise InputError(
                 "--write", f"{edit.kind} {edit.numbers[found.index(None)]} of the model",
-                "to be seen in its file", f"it is made by another element: set {edit} there",
+                "to be seen in its file",
+                f"another element makes it, or <attach> another file: set {edit} there",
             )  # fmt: skip
         elements = list({id(e): e for e in found if e is not None}.values())
+        if edit.kind == "joint" and {"stiffness", "damping"}.intersection(dict(edit.attributes)):
+            for number, element in zip(edit.numbers, found, strict=True):
+                self._state_springdamper(number, element)
         for name, value in edit.attributes:
-            own = [e for e in elements if name in e.attributes]
-            others = [e for e in elements if name not in e.attributes]
+            own = [e for e in elements if name in {**e.attributes, **self._given(e)}]
+            others = [e for e in elements if e not in own]
             for element in own:
                 self._give(element, name, value)
             if len(others) < _MANY:
@@ -87,6 +91,23 @@ class Texts:
                     self._give(element, name, value)
             else:
                 self._set_default(edit.kind, others, name, value)
+
+    def _state_springdamper(self, number: int, joint: Element | None) -> None:
+        """As the stiffness and damping that MuJoCo made of it, which it would override."""
+        model = self._places.model
+        if joint is None or not any(
+            "springdamper" in e.attributes for e in (joint, *self._places.defaults("joint", joint))
+        ):
+            return
+        stiffness = model.jnt_stiffness[number]
+        damping = model.dof_damping[model.jnt_dofadr[number]]
+        made = {"springdamper": "0 0", "stiffness": f"{stiffness:.6g}", "damping": f"{damping:.6g}"}
+        for name, value in made.items():
+            if name not in self._given(joint):
+                self._give(joint, name, value)
+
+    def _given(self, element: Element) -> dict[str, str]:
+        return self._attributes.get(id(element), {})
 
     def _set_default(self, kind: str, elements: list[Element], name: str, value: str) -> None:
         chains = [list(self._places.defaults(kind, e)) for e in elements]

@@ -46,7 +46,8 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
             raise InputError(
                 f"body {model.body(min(mine)).name!r} of the vibrissa", "held by a tendon",
                 "one that springs alone hold",
-                f"take tendon {model.tendon(tendon).name!r} away, or its stiffness and limits",
+                f"take tendon {model.tendon(tendon).name!r} away, or its stiffness, limits and "
+                "actuator",
             )  # fmt: skip
 
 

@@ -17,6 +17,12 @@ _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
 _NONE = np.zeros(0, int)
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
+# All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
+_STAGES = (
+    mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_collision,
+    mujoco.mj_makeConstraint, mujoco.mj_transmission, mujoco.mj_fwdVelocity,
+    mujoco.mj_fwdActuation,
+)  # fmt: skip
 
 
 class HeldChain(HeldModel):
@@ -84,15 +90,27 @@ class HeldChain(HeldModel):
 
     def evaluate(self) -> Floats:
         """What is out of balance at rest."""
-        data = self.data
-        data.qvel[:] = 0
-        mujoco.mj_fwdPosition(self.model, data)  # where the tip is, before its load is put on it
+        self.data.qvel[:] = 0
+        return self._forces()
+
+    def _forces(self) -> Floats:
+        """All that acts on its coordinates at the present place and speed."""
+        for stage in _STAGES:
+            stage(self.model, self.data)
+        if self.data.nefc:  # what these hold with goes with the inertia
+            mujoco.mj_forward(self.model, self.data)
+        forces = self.data.qfrc_passive + self.data.qfrc_actuator - self.data.qfrc_bias
+        forces += self._constrained()
+        load = self._force, self._torque
+        mujoco.mj_applyFT(self.model, self.data, *load, self.tip, self._tip_body, forces)
+        return np.asarray(forces[self.dofs])
+
+    def _sense(self) -> None:
+        """All of MuJoCo's evaluation at rest, with the load on the tip where that is."""
         moment = np.empty(3)
-        mujoco.mju_cross(moment, self.tip - data.xipos[self._tip_body], self._force)
-        data.xfrc_applied[self._tip_body, :3] = self._force
-        data.xfrc_applied[self._tip_body, 3:] = self._torque + moment
-        mujoco.mj_forwardSkip(self.model, data, int(mujoco.mjtStage.mjSTAGE_POS), 0)
-        return np.asarray((data.qfrc_smooth + self._constrained())[self.dofs])
+        mujoco.mju_cross(moment, self.tip - self.data.xipos[self._tip_body], self._force)
+        self.data.xfrc_applied[self._tip_body] = [*self._force, *(self._torque + moment)]
+        mujoco.mj_forward(self.model, self.data)
 
     def _constrained(self) -> Floats:
         """What welds, limits and other constraints hold with where nothing accelerates."""
@@ -123,8 +141,7 @@ class HeldChain(HeldModel):
 
         def moving(speed: Floats) -> Floats:
             self.data.qvel[:] = speed
-            mujoco.mj_forward(self.model, self.data)
-            return np.array(self.data.qfrc_smooth[self.dofs])
+            return self._forces()
 
         slope = self._slope_of(moving)
         self.evaluate()
@@ -157,6 +174,7 @@ class HeldChain(HeldModel):
             out = self._out_of_balance(residual)
             if not out < before / 2:
                 if out < _AT_REST:
+                    self._sense()
                     return
                 self._slope = self._checked(self.stiffness())
                 out = self._out_of_balance(residual)

@@ -20,6 +20,7 @@ _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _NOTHING = 1e-300
 _GOES_ON = 0.8  # cosine; links of a vibrissa are bent by less
 _ALIGNED = 0.03  # lengths of a link; a geom of the foot that goes on as the vibrissa, or its arc
+_AS_THICK = 1.5  # radii of a link; what is thicker than that, holds it
 
 
 @dataclass(frozen=True)
@@ -211,7 +212,8 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
     origin = model.body_pos[chain[0]]
     rigid = []
     for geom in np.flatnonzero(model.geom_bodyid == foot).tolist():
-        if foot == 0 or model.geom_type[geom] not in _SLENDER:
+        thick = radius_of(model, geom) > _AS_THICK * radius_of(model, found[0])
+        if foot == 0 or thick or model.geom_type[geom] == _SPHERE:
             continue
         off = axis_of(model, geom) - origin
         aside = off - np.outer(off @ direction, direction)

@@ -81,7 +81,7 @@ def moved_by(case: Path, file: Path, all_fixed: Readings) -> float:
 def trial(rng: random.Random, folder: Path) -> tuple[str, list[str]]:
     """What is said of a model with one fault left, and what is wrong with that."""
     model = Model()
-    while len(model.planted) < _FEWEST or model.carrier == "weld":
+    while len(model.planted) < _FEWEST or model.carrier == "weld" or "attached" in model.ways:
         model = drawn(rng)
     path = folder / "foreign.xml"
     path.write_text(rewritten(model.text(), model.ways, folder, rng))

@@ -8,6 +8,7 @@ chain, flex or cable, in which some numbers are others, or something was added. 
 what was planted, and as flags:
 
 - ``internal``: anything but a line of an `InputError`;
+- ``refused``: a line of an `InputError`, if nothing is garbled, but for a fix of what is attached;
 - ``missed``: a planted mistake that no fault names;
 - ``false``: a fault of a model in which none is planted;
 - ``left``: fixed, faults of that kind are still there;
@@ -164,6 +165,7 @@ ADDED = (
     '<tendon><spatial stiffness="1"><site site="clamp"/><site site="clamp"/></spatial></tendon>',
     '<equality><joint joint1="rail"/></equality>',
     '<equality><connect body1="link3" anchor="0 0 0"/></equality>',
+    '<equality><weld body1="link3" body2="link5"/></equality>',
     '<contact><exclude body1="link1" body2="link3"/></contact>',
     '<option><flag contact="disable"/></option>',
     '<compiler angle="degree" balanceinertia="true"/>',
@@ -251,6 +253,8 @@ def drawn(rng: random.Random) -> Model:
             MISTAKES[name](model)
             model.planted.append(name)
     model.ways = rng.sample([*WAYS], rng.randint(0, 4))
+    if model.carrier == "weld" and "flags, constraint" in model.planted:
+        model.carrier = "motor"  # as nothing would hold it
     if model.carrier == "fixed" and "with a ball" in model.ways:
         model.ways.remove("with a ball")  # as it would be the object that moves
     return model
@@ -319,6 +323,8 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
         outcome.said = str(error)
         if "\n" in outcome.said:
             outcome.flags.append("internal")
+        elif not (garbled_too or ("--write" in outcome.said and "attached" in outcome.model.ways)):
+            outcome.flags.append("refused")
     except Exception as error:  # the point of this
         outcome.said, outcome.flags = f"{type(error).__name__}: {error}", ["internal"]
     return outcome

@@ -1,5 +1,6 @@
 """How else a random foreign model may be written without being another one: other MJCF of it."""
 
+import math
 import random
 import re
 from collections.abc import Callable
@@ -8,6 +9,7 @@ from pathlib import Path
 Way = Callable[[str, Path, random.Random], str]
 
 _LINK = r'(<body name="link\d+" [^>]*>)'
+_GEOM = r'<geom fromto="0 0 0 0 ([^ ]*) 0" mass="([^"]*)"/>'
 
 
 def _turned(text: str, folder: Path, rng: random.Random) -> str:
@@ -95,6 +97,59 @@ def _of_cylinders(text: str, folder: Path, rng: random.Random) -> str:
     return text.replace('type="capsule"', 'type="cylinder"')
 
 
+def _meshed(text: str, folder: Path, rng: random.Random) -> str:
+    """Its links are meshes: prisms with twelve sides."""
+    radius = _length(text) / 200
+    meshes = ""
+    for long in dict.fromkeys(long for long, _ in re.findall(_GEOM, text)):
+        ring = [(radius * math.cos(a * math.pi / 6), radius * math.sin(a * math.pi / 6))
+                for a in range(12)]  # fmt: skip
+        corners = " ".join(f"{x:.8g} {y} {z:.8g}" for y in (0, long) for x, z in ring)
+        meshes += f'<mesh name="rod{long}" vertex="{corners}"/>'
+    text = re.sub(_GEOM, r'<geom type="mesh" mesh="rod\1" mass="\2"/>', text)
+    return _with(text, f"<asset>{meshes}</asset>")
+
+
+def _beaded(text: str, folder: Path, rng: random.Random) -> str:
+    """Each link has two geoms, made by `replicate`."""
+
+    def beads(link: re.Match[str]) -> str:
+        half, mass = float(link[1]) / 2, float(link[2]) / 2
+        geom = f'<geom fromto="0 0 0 0 {half:.8g} 0" mass="{mass:.8g}"/>'
+        return f'<replicate count="2" offset="0 {half:.8g} 0">{geom}</replicate>'
+
+    return re.sub(_GEOM, beads, text)
+
+
+def _turned_back(text: str, folder: Path, rng: random.Random) -> str:
+    """Each link's geom runs from its end to its joint, by a frame."""
+    frame = r'<frame pos="0 \1 0" quat="0 0 0 1">\g<0></frame>'
+    return re.sub(_GEOM, frame, text)
+
+
+def _attached(text: str, folder: Path, rng: random.Random) -> str:
+    """Its links are a model of their own, which is attached to the foot."""
+    start = end = text.index('<body name="link1"')
+    depth = 0
+    for tag in re.finditer(r"<(/?)body\b[^>]*>", text[start:]):
+        depth += -1 if tag[1] else 1
+        if not depth:
+            end = start + tag.end()
+            break
+    links = text[start:end]
+    if 'childclass="whisker"' in text:  # which is not handed on to what is attached
+        links = links.replace("<body ", '<body childclass="whisker" ', 1)
+    head = re.findall(r"<compiler[^>]*>|<default>.*</default>|<asset>.*?</asset>", text)
+    (folder / "links.xml").write_text(
+        f"<mujoco>{''.join(head)}<worldbody>{links}</worldbody></mujoco>"
+    )
+    text = text[:start] + text[end:]
+    text = re.sub(r'(body\d?|site)="(link\d+|on-it)"', r'\1="w-\2"', text)
+    attach = '<attach model="links" body="link1" prefix="w-"/>'
+    text = f"{text[:start]}{attach}{text[start:]}"
+    return _with(text, '<asset><model name="links" file="links.xml"/></asset>')
+
+
 def _of_many_options(text: str, folder: Path, rng: random.Random) -> str:
     """It has two options, one of them with flags that are as they are by default."""
     return text.replace("<option ", '<option><flag energy="enable"/></option><option ', 1)
@@ -122,6 +177,10 @@ WAYS: dict[str, Way] = {
     "loosely tied": _loosely_tied,
     "with a ball": _with_a_ball,
     "of cylinders": _of_cylinders,
+    "meshed": _meshed,
+    "beaded": _beaded,
+    "turned back": _turned_back,
+    "attached": _attached,
     "of many options": _of_many_options,
     "in two files": _in_two_files,
 }

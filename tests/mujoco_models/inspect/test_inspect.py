@@ -304,6 +304,23 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
     assert found.length == pytest.approx(1)
 
 
+@pytest.mark.parametrize(
+    ("shape", "begins"),
+    [
+        ('type="box" pos="0 0.0125 0" size="0.005 0.0125 0.005"', 0.0),
+        ('type="cylinder" pos="0 0.0125 0" size="0.02 0.0125"', 0.025),
+    ],
+)
+def test_it_begins_with_what_goes_on_as_it_does_and_is_as_thick(tmp_path, shape, begins):
+    """A box of links does, a housing about its axis does not."""
+    path = Chain().write(tmp_path)
+    own = '<geom name="whisker-geom0" fromto="0 0 0 0 0.025 0"/>'
+    assert own in path.read_text()
+    turned = 'quat="1 1 0 0"' if "cylinder" in shape else ""
+    path.write_text(path.read_text().replace(own, f"<geom {turned} {shape}/>"))
+    assert inspect_model(path).length == pytest.approx(1 - begins)
+
+
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
     found = measured(tmp_path, both, foot="whisker-foot")
