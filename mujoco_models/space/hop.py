@@ -39,8 +39,9 @@ def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled |
         if state.sliding:
             every = (_at_rest(rest, state, edge, place, foot, far) for edge in edges)
             holding = [one for one in every if one is not None and one.stays]
-            if len(holding) > 1:
-                return None  # the way down says to which of them
+            places = {tuple(np.rint(one.touch.centre / _BESIDE)) for one in holding}
+            if len(places) > 1 or (not holding and state is not held.state):
+                return None  # the way down says to which of them, or where to
             if holding:
                 return _within(model, far, start, holding[0])
         # Only where nothing that meets here leads on, what is next to it: a face beyond a corner
@@ -84,10 +85,13 @@ def _on(
     far: float,
 ) -> Settled | tuple[State, Floats] | None:
     """Where it comes to rest on one of some features, or where a face of them has ended."""
-    left = None
+    left, beyond = None, list[State]()
     for feature in features:
         reach = np.inf if feature.flat else far  # a way on is along a face
-        found = _at_rest(rest, state, feature, place, foot, reach)
+        # Faces that lead to each other: the edge between them holds, with a normal between theirs.
+        starts = [state] if feature.flat or left is not None else [state, *beyond]
+        tried = (_at_rest(rest, one, feature, place, foot, reach) for one in starts)
+        found = next((one for one in tried if one is not None), None)
         if found is None:
             continue
         if found.stays:
@@ -96,6 +100,8 @@ def _on(
         share = mesh.room(place, by) if feature.flat else 0.0
         if share * float(np.linalg.norm(by)) > _BESIDE and left is None:
             left = found.state, place + share * by
+        if feature.flat:
+            beyond.append(found.state)
     return left
 
 

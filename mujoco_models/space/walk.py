@@ -39,7 +39,6 @@ _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an 
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
-_GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
 
@@ -59,24 +58,19 @@ class Walk:
         self._model, self._rest, self._foot, self._marks = model, rest, foot, marks
         self._at = 0.0
         self._held: Settled | None = None
-        self._lost = False
-        self._failures = 0
+        self._lost = ""  # the status until the vibrissa is clear, where it has gone elsewhere
         self.events: list[WalkEvent] = []
 
     def go_to(self, target: float) -> Station:
         """Go on to a station."""
-        if self._failures == _GIVEN_UP:
-            if self._gap(target) <= 0:
-                self._at = target
-                return Station("unsettled", None)
-            self._held, self._failures, self._at = None, 0, self._clear(self._at, target)
-        settled = True
-        while self._at < target and settled:
-            settled = self._follow(target) if self._held is not None else self._seek(target)
+        while self._at < target:
+            if self._held is None:
+                self._seek(target)
+            else:
+                self._follow(target)
         if self._held is None:
-            return Station("slipped off" if self._lost else "ok", None)
-        self._failures = 0 if settled else self._failures + 1
-        exactly = self._rest.exactly(self._held, self._foot(target)) if settled else None
+            return Station(self._lost or "ok", None)
+        exactly = self._rest.exactly(self._held, self._foot(target))
         if exactly is None:
             return Station("unsettled", None)
         self._held = exactly
@@ -87,22 +81,21 @@ class Walk:
         self._model.place(self._foot(travel), self._model.straight)
         return self._model.nearest_link()[0]
 
-    def _seek(self, target: float) -> bool:
+    def _seek(self, target: float) -> None:
         """Go on to the next contact, or to the station."""
         if self._lost:
             if self._gap(target) <= 0:
                 self._at = target
-                return True
-            self._lost = False
+                return
+            self._lost = ""
             self._at = self._clear(self._at, target)
         corners = self._marks[(self._marks > self._at) & (self._marks < target)]
         touch = first_touch(self._gap, self._at, [*corners.tolist(), target], _TOUCH)
         if touch is None:
             self._at = target
-            return True
+            return
         self.events.append(WalkEvent("touch", touch))
         self._begin(touch)
-        return True
 
     def _clear(self, low: float, high: float) -> float:
         """Where the straight vibrissa comes clear of the body, a little beyond."""
@@ -119,8 +112,10 @@ class Walk:
         start = State(model.straight, link, s, 0.0, False)
         surface = surface_at(model, model.touch(link, s))
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
+        if self._held is None:
+            self._lost = "unsettled"
 
-    def _follow(self, target: float) -> bool:
+    def _follow(self, target: float) -> None:
         """Along the stable branch to the station, or to its end and what comes after it."""
         stride = _LONGEST  # how far Newton's method leads
         while self._at < target:
@@ -133,16 +128,17 @@ class Walk:
             if found is None:
                 stride = step / _SHORTER
                 if step <= _SMALLEST:
-                    return self._fall(held, goal)
+                    self._fall(held, goal)
+                    return
             elif found.stays:
                 self._go_on(found, goal)
                 stride = min(max(_LONGER * step, stride), _LONGEST)
             else:
                 beyond = self._across(held, found, goal)
                 if beyond is None:
-                    return self._fall(held, goal)
+                    self._fall(held, goal)
+                    return
                 self._go_on(beyond, goal)
-        return True
 
     def _go_on(self, found: Settled, goal: float) -> None:
         """To the next state of the same branch."""
@@ -224,29 +220,26 @@ class Walk:
         high = first_unlike(held, self._at, goal, followed, _at_tip, _EVENT)
         self.events.append(WalkEvent("phase", high))
 
-    def _fall(self, held: Settled, goal: float) -> bool:
+    def _fall(self, held: Settled, goal: float) -> None:
         """Where the vibrissa goes when no stable equilibrium is near any more."""
-        if held.state.force < _LOOSE:
-            self.events.append(WalkEvent("release", self._at))
-            self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
-            return True
-        hopped = over_faces(self._rest, held, self._foot(goal), _LANDING)
-        if hopped is not None:
-            self.events.append(WalkEvent("hop", self._at))
-            self._note_phase(held, goal, hopped)
-            self._held, self._at = hopped, goal
-            return True
-        landed = self._descended(held, goal)
-        if landed is None:
-            self.events.append(WalkEvent("slip-off", self._at))
-            self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
-            return True
-        if not landed.stable:
-            return False
-        if _apart(landed, held) > _STEADY:  # or it was the same branch, where that is steep
-            self.events.append(WalkEvent("hop", self._at))
-        self._held, self._at = landed, goal
-        return True
+        clear, loose = self._gap(goal) > 0, held.state.force < _LOOSE
+        hopped = landed = None
+        if not (clear and loose):
+            hopped = over_faces(self._rest, held, self._foot(goal), _LANDING)
+            landed = hopped or self._descended(held, goal)
+        self._held = None
+        if landed is None or (loose and not landed.stable):
+            self.events.append(WalkEvent("release" if loose else "slip-off", self._at))
+            self._lost = "" if clear else "slipped off"
+        elif not landed.stable:
+            self._lost = "unsettled"
+        else:
+            if hopped or _apart(landed, held) > _STEADY:  # or the same branch, where that is steep
+                self.events.append(WalkEvent("hop", self._at))
+            if hopped:
+                self._note_phase(held, goal, landed)
+            self._held = landed
+        self._at = goal
 
     def _descended(self, held: Settled, goal: float) -> Settled | None:
         """Where the vibrissa goes down to.

@@ -18,6 +18,12 @@ from tests.fuzz.space import KINDS, main
         93094,  # a vibrissa drawn off an edge, whose tip lands on a face
         99024,  # what lands at 0.1203 L: its motion says whether it does
         92107,  # a side that comes over a corner: an edge holds it, and a face beyond its tip
+        108040,  # a tip goes over a face and is a side where the next edge holds it
+        102020,  # the way down ends at a tip: Newton's method begins with its rotation
+        100038,  # a side that turns about a corner, faster than its contact moves on the parallel
+        700054,  # an edge that is there twice: its two triangles are not quite in one plane
+        900125,  # a tip on an edge whose faces lead to each other
+        110081,  # a station where a tip passes an edge
     ],
 )
 def test_a_mesh_has_no_silent_error(seed):

@@ -123,9 +123,10 @@ def _down(
 
 def _next_to(scene: Scene, touching: Touching, foot: Floats) -> Contact | None:
     """The stable state of the closed form next to a chain at rest."""
-    for tangent in (False, True):
-        free = touching.arc_length if tangent else max(touching.bent, _LEAST)
-        trial = contact_at(scene, touching.on_parallel, free, tangent)
+    side = contact_at(scene, touching.on_parallel, touching.arc_length, tangent=True)
+    rotation = max(side.rotation - touching.bent, _LEAST)
+    tip = contact_at(scene, touching.on_parallel, rotation, tangent=False)
+    for trial in (tip, side):
         found = settle(scene, trial, foot, _ASTRAY)
         if found is None or _apart(found.spot.point, touching.place) > _NEAR:
             continue

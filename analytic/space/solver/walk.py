@@ -18,7 +18,7 @@ from analytic.space.solver.stability import is_stable
 _CLOSE = 1e-13  # L of the way, to which events are enclosed
 _BEYOND = 1e-9  # L: a state that is missing at one place only was missed by Newton's method
 _BESIDE = 1e-6  # L: beside a seam, of faces that are 1e-7 rad apart, contacts are on neither
-_PACE = 10.0  # of the foot's, that a contact may have there
+_PACE = 10.0  # of the foot's, that the axis may have there: normals turn at once about a corner
 _MISSES = 200  # of these between two stations, and of edges that are crossed
 _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
@@ -197,7 +197,9 @@ class Gliding(Walker[Contact]):
             return None
         beside = contact_at(self._scene, ahead.on_parallel, ahead.free, ahead.tangent)
         found = self._stable_at(beside, travel)
-        return found if found is not None and _apart(found, start) < steady else None
+        if found is None or np.linalg.norm(found.centre - start.centre) >= steady:
+            return None
+        return found
 
     def _land(self, contact: Contact, travel: float) -> tuple[float, Contact] | None:
         if contact.force < LOOSE:

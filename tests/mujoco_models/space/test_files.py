@@ -34,7 +34,7 @@ def test_ten_oblique_ways_agree_with_the_closed_form(file, tmp_path):
     apart = 0
     for seed in range(10):
         case = oblique(file, seed, tmp_path)
-        outcome = judge(solve_space(case), simulate_space(case), 0.0)
+        outcome = judge(case, solve_space(case), simulate_space(case), 0.0)
         assert outcome.rms <= 3e-3, (case.name, outcome)  # of the largest component
         assert not {"silent", "lost", "unsettled"} & set(outcome.flags), (case.name, outcome)
         apart += "slip-off" in outcome.flags  # more than 5e-3 L, or in one only
