@@ -46,4 +46,4 @@ def budget_in_space(
     account.add_extrapolated("discretisation", run["base"], run["segments"], finer)
     account.add_extrapolated("softness", run["base"], run["stiffness"], harder)
     account.settle()
-    return Parted(**account.common(), order=_ORDER, closes=account.closes(), blame=account.blame())
+    return Parted(**account.common(), **account.closing(), order=_ORDER, blame=account.blame())

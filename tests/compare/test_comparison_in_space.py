@@ -239,6 +239,8 @@ def test_planted_parts_are_found(exact, segments, stiffness):
     changes = changes_in_space(SpatialSettings(segments=segments, contact_stiffness=stiffness))
     found = budget_in_space(exact, {name: sweep(one) for name, one in changes.items()}, changes)
     assert found.stations == exact.touching.sum()
+    # Where half as many segments and a tenth of the stiffness are left, they say less.
+    assert (found.closes, found.undecided) == (False, segments == 300)
     planted = {"discretisation": 2 / segments**2, "softness": 1e-3, "unexplained": 1e-3}
     for name in COMPONENTS:
         share = found.disagreement[name] / (2 / segments**2 + 2e-3)
