@@ -11,7 +11,7 @@ from compare.explain.parts import Account, Parted, Shared
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.settings import SpatialSettings
 
-_ORDER = 2  # of the chain in 1/N
+_ORDER = 2.0  # of the chain in 1/N
 _MOST = 400  # segments
 
 
