@@ -11,9 +11,8 @@ from analytic.problem.columns import units
 from compare.explain.changes import SHARPER
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
-    LEFT,
     SAFETY,
-    SMALL,
+    UNRESOLVED,
     Account,
     Parted,
     Shared,
@@ -28,14 +27,11 @@ from compare.sense.noise import scales
 
 REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
-UNRESOLVED = 1e-5
-"""What no budget resolves, of a reading's largest magnitude."""
 _LEAST_ORDER = 1.0  # of a naive clamp; two of one at mid-cell
 _SEEN = 0.1  # from a whole number, as an order that is seen
 # Two combinations of the three sweeps hold errors of one size, each over ten swings and more: for
 # 95 % of such pairs their rms differ by less (F(10, 10) = 3.0).
 _COVERS = 1.7
-_UNSURE = 1 / 3  # how uncertain, of a disagreement that counts as explained, what is left may be
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,13 +83,7 @@ def budget(
     # What is out of balance shows in the sensors, too: that is unrest, and counted there.
     account.add_uncertain("sensor", _sensor(runs["calm"], shared, exact))
     account.add_uncertain("extension", stretched(signatures, base.values("extension")[kept]))
-    left, unsure = account.settle()
-    unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(account.total)
-    within = bool((left <= unresolved).all())
-    resolved = bool(
-        (left <= np.hypot(SMALL, LEFT * whole)).all()
-        and (unsure <= np.hypot(SMALL, _UNSURE * whole)).all()
-    )
+    _, unsure = account.settle()
     phase = exact.table["phase"].to_numpy()[kept]
     checks = {"softness": shifted_inward(signatures, _sunk(base, shared), thickness)}
     if faceted is not None:
@@ -105,7 +95,7 @@ def budget(
     return Budget(
         **account.common(),
         order=order,
-        closes=within and resolved,
+        **account.closing(),
         blame=account.blame(),
         by_phase={
             name: {
@@ -114,10 +104,9 @@ def budget(
             }
             for name, (signal, _) in account.terms.items()
         },
-        suspects=suspects(rest, signatures, float(np.linalg.norm(unresolved))),
+        suspects=suspects(rest, signatures, float(np.linalg.norm(np.hypot(unsure, UNRESOLVED)))),
         convergence=convergence(shared, [runs[name] for name in REFINED]),
         checks={name: shared.rms(check) for name, check in checks.items()},
-        undecided=within and not resolved,
     )
 
 

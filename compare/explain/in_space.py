@@ -11,7 +11,7 @@ from compare.explain.parts import Account, Parted, Shared
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.settings import SpatialSettings
 
-_ORDER = 2  # of the chain in 1/N
+_ORDER = 2.0  # of the chain in 1/N
 _MOST = 400  # segments
 
 
@@ -46,4 +46,4 @@ def budget_in_space(
     account.add_extrapolated("discretisation", run["base"], run["segments"], finer)
     account.add_extrapolated("softness", run["base"], run["stiffness"], harder)
     account.settle()
-    return Parted(**account.common(), order=_ORDER, closes=account.closes(), blame=account.blame())
+    return Parted(**account.common(), **account.closing(), order=_ORDER, blame=account.blame())

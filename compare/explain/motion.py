@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import Readings
-from compare.explain.parts import SAFETY, Account, Parted, Shared, observed_order
+from compare.explain.parts import LEFT, SAFETY, SMALL, Account, Parted, Shared, observed_order
 from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
 from mujoco_models.user_model.names import OwnModel
@@ -109,13 +109,14 @@ def motion_budget(
         account.add("beam", shared.off(runs["beam"]))
     at_rest = shared.off(runs["rest"])
     account.add("at rest", at_rest, rms(at_rest) if of_our_chain else 0.0)
-    account.settle()
+    left, unsure = account.settle()
     if "undamped" in run:  # what is rate and what damping does not matter to what is left
         account.add("rate", rate - 2 * damped, np.hypot(slowest, rms(damped)))
         account.add("damping", 2 * damped, rms(damped))
+    allowed = np.hypot(SMALL, np.maximum(unsure, LEFT * rms(account.total)))
     return MotionBudget(
         **account.common(),
         order=order,
-        closes=account.closes(),
+        closes=bool((left <= allowed).all()),
         blame=account.blame(sure=True),
     )

@@ -25,8 +25,10 @@ SAFETY = 1.25
 what the finest grid says, and from what the two finest alone would make of it."""
 SMALL = 5e-5
 """What counts as small in any case."""
-LEFT = 0.1
-"""What may stay unexplained of a disagreement that counts as explained."""
+UNRESOLVED = 1e-5
+"""What no budget resolves, of a reading's largest magnitude."""
+LEFT, _UNSURE = 0.1, 1 / 3
+"""What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
 
 
 @dataclass(frozen=True)
@@ -152,11 +154,14 @@ class Account:
         self.add("unexplained", rest, np.sqrt(np.sum(np.square(uncertainties), axis=0)))
         return rms(rest), self.terms["unexplained"][1]
 
-    def closes(self) -> bool:
-        """Whether what the parts leave is within its uncertainty, or small."""
+    def closing(self) -> dict[str, Any]:
+        """Whether what the parts leave is within its uncertainty, and both of them small."""
         rest, unsure = self.terms["unexplained"]
-        allowed = np.hypot(SMALL, np.maximum(unsure, LEFT * rms(self.total)))
-        return bool((rms(rest) <= allowed).all())
+        left, whole = rms(rest), rms(self.total)
+        within = bool((left <= np.hypot(unsure, UNRESOLVED)).all())
+        small = left <= np.hypot(SMALL, LEFT * whole)
+        resolved = bool((small & (unsure <= np.hypot(SMALL, _UNSURE * whole))).all())
+        return {"closes": within and resolved, "undecided": within and not resolved}
 
     def blame(self, sure: bool = False) -> str:
         """The part that dominates, or of which that much is sure."""

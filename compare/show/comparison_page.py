@@ -9,8 +9,8 @@ import numpy as np
 from analytic import PHASES, Readings
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison, SpatialComparison
-from compare.explain.budget import UNRESOLVED, Budget
-from compare.explain.parts import Parted
+from compare.explain.budget import Budget
+from compare.explain.parts import UNRESOLVED, Parted
 from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
 from compare.show.budgets import budget_summary, left_over, phases_table

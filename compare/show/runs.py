@@ -6,8 +6,8 @@ from itertools import groupby
 from pathlib import Path
 
 from analytic import CLAMP_READINGS, InputError
-from compare.explain.budget import UNRESOLVED, Budget
-from compare.explain.parts import Parted
+from compare.explain.budget import Budget
+from compare.explain.parts import UNRESOLVED, Parted
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
 from compare.show.budgets import left_over
 from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections

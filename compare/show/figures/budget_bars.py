@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from compare.explain.budget import UNRESOLVED
-from compare.explain.parts import Parted, fitted_orders
+from compare.explain.parts import UNRESOLVED, Parted, fitted_orders
 from compare.show import style
 from compare.show.budgets import headline
 from compare.show.numbers import short

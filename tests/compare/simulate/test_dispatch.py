@@ -57,8 +57,7 @@ def test_the_contacts_at_rest_are_as_stiff_as_in_motion():
 def test_a_case_in_space_has_a_budget():
     swept = []
     found, runs = measure_budget(SPACE, SpatialSettings(segments=6), lambda: swept.append(1))
-    assert found.stations == 2
-    assert len(swept) == len(runs) == 3
+    assert (found.stations, len(swept), len(runs)) == (2, 3, 3)
 
 
 def test_each_kind_of_case_has_its_budget(monkeypatch):
