@@ -69,15 +69,24 @@ class Measurement(SweepPair[Readings]):
         return alike / (counts["free"] + touching) if touching else None
 
     def beyond(self) -> list[str]:
-        """Events of the reference that lie beyond the stretch that the candidate covers."""
-        along = self.candidate.running_values
+        """Events on the stretch of the reference, beyond the one that the candidate covers."""
         return [
             name
-            for name, event in self.events.items()
-            if event.reference is not None
-            and event.candidate is None
-            and not np.min(along) <= event.reference <= np.max(along)
+            for name, has, lacks, at in self._one_sided()
+            if has == "reference" and self._covers(has, at) and not self._covers(lacks, at)
         ]
+
+    def not_reached(self) -> list[str]:
+        """Events of one sweep beyond the stations of both: known, but asked of neither."""
+        return [
+            name
+            for name, has, lacks, at in self._one_sided()
+            if not (self._covers(has, at) or self._covers(lacks, at))
+        ]
+
+    def _covers(self, which: str, at: float) -> bool:
+        along = getattr(self, which).running_values
+        return bool(along.min() <= at <= along.max())
 
     def made_by_noise(self) -> list[str]:
         """Limits of a Phase B that one sweep alone has, as far as its noise lets it be seen."""

@@ -81,7 +81,7 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
     yield from common.sizes(comparison, worst_reading(comparison))
     apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
-    shift = "none" if apart is None else short(apart / size, f" {unit}")
+    shift = "not in both" if apart is None else short(apart / size, f" {unit}")
     yield Tile("snap-off apart", shift, "candidate less reference")
     alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
     if alike is not None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS, SENSED, Readings, named_case, solve_sweep
 from compare import Limit, Tolerances, compare
 from compare.sense.noise import with_noise
 from compare.show.verdict import verdict
@@ -44,6 +44,16 @@ def test_a_missing_snap_off_is_named():
     assert "beyond the stretch that the candidate covers" in found.failures[-1]
     assert found.likely is not None
     assert found.likely.startswith("too short a sweep: it covers foot_x = ")
+
+
+def test_a_snap_off_beyond_both_sweeps_is_asked_of_neither():
+    case = named_case("parabola")
+    exact = solve_sweep(replace(case, sweep=replace(case.sweep, stop=-0.5)))
+    sensed = replace(exact, table=exact.table[list(SENSED)], provenance={})
+    found = compare(exact, sensed)
+    assert found.agrees, found.failures
+    assert found.snap_off.reference < -0.5
+    assert found.likely is None
 
 
 def test_reasons_fit_the_source():
