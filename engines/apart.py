@@ -61,7 +61,7 @@ def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIME
     try:
         found = pool.schedule(_sweep, (name, case, settings), timeout=timeout).result()
     except TimeoutError:
-        return Outcome(name, trouble=f"not finished after {timeout:g} s")
+        return Outcome(name, trouble=f"not finished after {timeout:g} s ([engine] timeout)")
     except ProcessExpired as error:
         return Outcome(name, trouble=f"its process ended without a word, code {error.exitcode}")
     except Exception as error:  # what it found cannot be sent

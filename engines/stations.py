@@ -210,11 +210,12 @@ class _Walk:
 
     def _end(self, trial: float, row: Row | None) -> None:
         """The branch ends here: it let go, in a fold, or the solver failed."""
-        let_go, doubted = row is not None and row.phase == "free", row is not None and row.doubt
-        if not doubted and self._last.load >= _HELD and (let_go or self._folds(trial)):
+        let_go, doubt = row is not None and row.phase == "free", row.doubt if row else ""
+        if not doubt and self._last.load >= _HELD and (let_go or self._folds(trial)):
             self.snap_off = (self.foot_x + trial) / 2
         else:
-            self._lost = "the solver found no neighbour of the last state at rest, and no fold"
+            nothing = "the solver found no neighbour of the last state at rest, and no fold"
+            self._lost = doubt or nothing
 
     def _folds(self, end: float) -> bool:
         """Whether the state changed ever faster on the way there."""

@@ -51,10 +51,12 @@ def _cases() -> Iterator[str]:
 def _engines() -> Iterator[str]:
     from engines import list_engines
 
-    yield f"{'exact':12}{'reference':14}the closed form"
-    for found in list_engines():
+    engines = list_engines()
+    width = 2 + max(len(found.name) for found in engines)
+    yield f"{'exact':{width}}{'reference':14}the closed form"
+    for found in engines:
         role = "" if found.engine is None else found.engine.role
-        yield f"{found.name:12}{role:14}{found.trouble or found.version or ''}"
+        yield f"{found.name:{width}}{role:14}{found.trouble or found.version or ''}"
 
 
 def _methods() -> Iterator[str]:

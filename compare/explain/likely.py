@@ -62,9 +62,10 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
         )
     if (cause is None or cause.startswith("noise")) and (ended := _ended(found)):
         cause = f"{ended}; {cause}" if cause else ended
-    return (
-        "; ".join([*notes, f"beside that {cause}" if notes else cause] if cause else notes) or None
-    )
+    if notes:
+        notes.append(f"beside that {cause or 'the readings disagree, and do not show why'}")
+        return "; ".join(notes)
+    return cause
 
 
 def _untouched(found: Measurement) -> str | None:
@@ -80,7 +81,11 @@ def _untouched(found: Measurement) -> str | None:
             f"{(idle & touching).sum()} stations: the sensor measures something else, or nothing"
         )
     if unknown.any():
-        return f"no station with a load is to be trusted: {unknown.sum()} of {len(idle)} are not"
+        reasons = found.candidate.provenance.get("unsettled") or {}
+        why = f", mostly as {max(reasons, key=reasons.__getitem__)}" if reasons else ""
+        return (
+            f"no station with a load is to be trusted: {unknown.sum()} of {len(idle)} are not{why}"
+        )
     return "the candidate never touches: its clamp reads no load at any station"
 
 

@@ -111,7 +111,7 @@ def _causes(found: Comparison) -> Iterator[str]:
     if not _settled(found):
         stations = len(found.candidate.table)
         yield f"no figures: {found.stations} of {stations} stations can be compared"
-    if not found.agrees:
+    elif not found.agrees:
         yield f"likely {found.likely}" if found.likely else "the readings alone do not show why"
     unsettled = found.candidate.provenance.get("unsettled") or {}
     if unsettled:
