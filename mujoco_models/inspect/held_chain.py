@@ -19,7 +19,7 @@ _NONE = np.zeros(0, int)
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 # All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
 _STAGES = (
-    mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_collision,
+    mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_tendon, mujoco.mj_collision,
     mujoco.mj_makeConstraint, mujoco.mj_transmission, mujoco.mj_fwdVelocity,
     mujoco.mj_fwdActuation,
 )  # fmt: skip
