@@ -17,7 +17,7 @@ _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
 _NONE = np.zeros(0, int)
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
-# All of MuJoCo that forces take without constraints; its factors of the inertia cost ten times that.
+# All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
 _STAGES = (
     mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_collision,
     mujoco.mj_makeConstraint, mujoco.mj_transmission, mujoco.mj_fwdVelocity,

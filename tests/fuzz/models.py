@@ -253,6 +253,8 @@ def drawn(rng: random.Random) -> Model:
             MISTAKES[name](model)
             model.planted.append(name)
     model.ways = rng.sample([*WAYS], rng.randint(0, 4))
+    if model.carrier == "weld" and "flags, constraint" in model.planted:
+        model.carrier = "motor"  # as nothing would hold it
     if model.carrier == "fixed" and "with a ball" in model.ways:
         model.ways.remove("with a ball")  # as it would be the object that moves
     return model

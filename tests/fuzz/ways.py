@@ -137,6 +137,8 @@ def _attached(text: str, folder: Path, rng: random.Random) -> str:
             end = start + tag.end()
             break
     links = text[start:end]
+    if 'childclass="whisker"' in text:  # which is not handed on to what is attached
+        links = links.replace("<body ", '<body childclass="whisker" ', 1)
     head = re.findall(r"<compiler[^>]*>|<default>.*</default>|<asset>.*?</asset>", text)
     (folder / "links.xml").write_text(
         f"<mujoco>{''.join(head)}<worldbody>{links}</worldbody></mujoco>"
