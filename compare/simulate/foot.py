@@ -10,6 +10,7 @@ from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _WAY = 2.0  # L; of the foot, from first touch to release
+_PULLS = 100.0  # of a sweep's force; a sensor on a foot that nothing drives feels 1e-4 of it
 
 
 def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
@@ -56,6 +57,11 @@ def _reach(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "foot", f"its slide ends {reach.way / length:.2g} L to the left, a "
                      f"sweep takes up to {_WAY:g} L",
                      edits=(Edit("joint", (("limited", "false"),), (reach.joint,)),))  # fmt: skip
+    pull = reach.stiffness * _WAY * length
+    if reach.actuator is None and pull > _PULLS * FORCE * as_intended(found) / length**2:
+        yield Remark("fault", "foot", f"its slide has a spring, {reach.stiffness:.3g}, by a default"
+                     " perhaps, which pulls it back",
+                     edits=(Edit("joint", (("stiffness", "0"),), (reach.joint,)),))  # fmt: skip
     if reach.follows is False:
         yield Remark("fault", "foot", "its actuator has an activation of its own, and does not "
                      "follow what it is given",

@@ -35,6 +35,7 @@ class Reach:
     speed: float  # of a velocity actuator
     force: float  # of an actuator
     follows: bool  # whether it does what it is given at once
+    stiffness: float  # of a spring on the slide itself
 
 
 def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
@@ -46,6 +47,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     sense = float(np.sign(data.xaxis[joint] @ left))
+    spring = float(model.jnt_stiffness[joint])
     start = float(model.qpos0[model.jnt_qposadr[joint]])
 
     def ahead(limited: bool, ends: Floats, at: float) -> float:
@@ -53,7 +55,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
 
     way = ahead(bool(model.jnt_limited[joint]), model.jnt_range[joint], start)
     if actuator is None or model.actuator_biastype[actuator] != _FOLLOWS:
-        return Reach(joint, actuator, way, math.inf, math.inf, math.inf, True)
+        return Reach(joint, actuator, way, math.inf, math.inf, math.inf, True, spring)
     by_place = model.actuator_biasprm[actuator, 1] != 0
     gear = float(model.actuator_gear[actuator, 0])
     given = model.actuator_ctrlrange[actuator] / gear
@@ -68,6 +70,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
         speed=math.inf if by_place else most,
         force=force if limited else math.inf,
         follows=bool(model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE),
+        stiffness=spring,
     )
 
 

@@ -126,6 +126,14 @@ def test_what_stops_contacts_or_the_drive_is_switched_off(tmp_path, old, new, su
     assert after.inspection.sound
 
 
+def test_a_spring_on_a_slide_that_nothing_drives_is_taken_off(tmp_path):
+    """A default of all joints; 95 % of a force is off, as the sensor feels the foot pulled back."""
+    path = on_rail(tmp_path, ('name="rail"', 'name="rail" stiffness="500"'), (MOTOR, "</mujoco>"))
+    before, after = fixed(path)
+    assert faults_in(before) == {"foot"}
+    assert after.inspection.sound
+
+
 def test_a_drive_that_reaches_as_far_as_a_sweep_is_no_fault(tmp_path):
     """Its limits are those on the way to the left alone."""
     limits = 'forcerange="-9 9" ctrlrange="-0.06 0.01"'
