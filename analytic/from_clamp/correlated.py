@@ -63,6 +63,7 @@ class Estimated:
     noise: NoiseFound
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
     likelihood: float  # logarithm of the readings' probability, but for a constant
+    relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
 
 
 def estimate(
@@ -90,6 +91,7 @@ def estimate(
     rows = [len(readings)] if rows is None else rows
     flat = by_number.reshape(readings.size, known)
     start = np.linalg.lstsq(flat, readings.ravel(), rcond=None)[0]
+    given = float(np.sum(readings**2))
     readings = readings - by_number @ start
     hum = _hum(max(np.split(readings, np.cumsum(rows)[:-1]), key=len))
     if hum:
@@ -130,6 +132,8 @@ def estimate(
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(columns))
     size = sizes[:known]
+    alone = np.diag(prior) + gram[:, :1].sum(axis=2)
+    unfitted = float(alone[..., -1, -1].sum() - _without_nuisances(alone, 0)[0].sum())
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         return start + found[0] / size, found[1] / np.outer(size, size)
@@ -139,6 +143,7 @@ def estimate(
         _described(likely, hum, block),
         tuple(scaled(one) for one in by_pass),
         float(logsumexp(weights, axis=0).sum()),
+        given - float(np.sum(readings**2)) + unfitted,
     )
 
 
