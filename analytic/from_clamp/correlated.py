@@ -94,16 +94,17 @@ def estimate(
     given = float(np.sum(readings**2))
     readings = readings - by_number @ start
     hum = _hum(max(np.split(readings, np.cumsum(rows)[:-1]), key=len))
+    parts = [by_number, nuisances, readings[:, :, None]]
     if hum:
         line = np.concatenate([_line(n, readings.shape[1], hum) for n in rows])
-        nuisances = np.concatenate([nuisances, line], axis=2)
+        parts.insert(2, line)
         uncertain = np.append(uncertain, np.full(line.shape[2], np.inf))
-    design = np.concatenate([by_number, nuisances], axis=2)
-    sizes = np.sqrt(np.einsum("ncm,ncm->m", design, design))
+    block = len(readings) // _ENOUGH + 1  # stations of which one is made
+    columns = np.concatenate([_in_blocks(one, rows, block) for one in parts], axis=2)
+    rows = [_blocks(n, block) for n in rows]
+    sizes = np.sqrt(np.einsum("ncm,ncm->m", *2 * [columns[:, :, :-1]]))
     sizes[sizes == 0] = 1.0
-    columns = np.concatenate([design / sizes, readings[:, :, None]], axis=2)
-    block = len(columns) // _ENOUGH + 1  # stations of which one is made
-    columns, rows = _in_blocks(columns, rows, block)
+    columns[:, :, :-1] /= sizes
     gram, root = _gram(columns, rows)
     prior = np.zeros(len(sizes) + 1)
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
@@ -147,15 +148,19 @@ def estimate(
     )
 
 
-def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> tuple[Floats, list[int]]:
+def _blocks(stations: int, block: int) -> int:
+    return -(-stations // block)
+
+
+def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> Floats:
     """Means of neighbours times the root of their number, which keeps white noise as it is."""
-    counts = [-(-n // block) for n in rows]
-    each = zip(np.cumsum(rows) - rows, rows, counts, strict=True)
-    first = np.concatenate([begin + np.arange(count) * n // count for begin, n, count in each])
+    each = zip(np.cumsum(rows) - rows, rows, strict=True)
+    parts = [begin + np.arange(_blocks(n, block)) * n // _blocks(n, block) for begin, n in each]
+    first = np.concatenate(parts)
     number = np.diff(first, append=len(columns))
     # By one root for all: noise that remembers is not to jump where a block is one shorter.
     means = np.add.reduceat(columns, first, axis=0) / number[:, None, None]
-    return means * np.sqrt(block), counts
+    return np.asarray(means * np.sqrt(block))
 
 
 def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
