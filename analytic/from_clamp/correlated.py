@@ -27,7 +27,7 @@ _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
 _REMEMBERED = 0.3  # correlation from station to station that is said
-_RANK = 1e-14  # of the largest eigenvalue: rounding
+_RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
 _FINER = 4  # points of a periodogram for each of its own
 _SLOWEST = 5.0  # periods in all stations; what is slower is drift
@@ -202,11 +202,12 @@ def _without_nuisances(gram: Floats, known: int) -> tuple[Floats, Floats]:
     And the logarithm of the determinant of what is left out.
     """
     kept = np.array([*range(known), gram.shape[-1] - 1])
-    values, vectors = np.linalg.eigh(gram[..., known:-1, known:-1])
-    values = np.maximum(values, _RANK * values[..., -1:].max(axis=1, keepdims=True))
-    along = vectors.swapaxes(-1, -2) @ gram[..., known:-1, :][..., kept]
-    left = gram[..., kept, :][..., kept] - along.swapaxes(-1, -2) @ (along / values[..., None])
-    return left, np.log(values).sum(axis=-1)
+    inner, beside = gram[..., known:-1, known:-1], gram[..., known:-1, :][..., kept]
+    largest = np.einsum("...ii->...i", inner).max(axis=-1, initial=0.0)
+    inner = inner + _RANK * largest[..., None, None] * np.eye(inner.shape[-1])
+    left = gram[..., kept, :][..., kept]
+    left = left - beside.swapaxes(-1, -2) @ np.linalg.solve(inner, beside)
+    return left, np.linalg.slogdet(inner).logabsdet
 
 
 def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:
