@@ -27,7 +27,7 @@ _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
 _REMEMBERED = 0.3  # correlation from station to station that is said
-_RANK = 1e-14  # of the largest eigenvalue: rounding
+_RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
 _FINER = 4  # points of a periodogram for each of its own
 _SLOWEST = 5.0  # periods in all stations; what is slower is drift
@@ -63,6 +63,7 @@ class Estimated:
     noise: NoiseFound
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
     likelihood: float  # logarithm of the readings' probability, but for a constant
+    relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
 
 
 def estimate(
@@ -90,18 +91,20 @@ def estimate(
     rows = [len(readings)] if rows is None else rows
     flat = by_number.reshape(readings.size, known)
     start = np.linalg.lstsq(flat, readings.ravel(), rcond=None)[0]
+    given = float(np.sum(readings**2))
     readings = readings - by_number @ start
     hum = _hum(max(np.split(readings, np.cumsum(rows)[:-1]), key=len))
+    parts = [by_number, nuisances, readings[:, :, None]]
     if hum:
         line = np.concatenate([_line(n, readings.shape[1], hum) for n in rows])
-        nuisances = np.concatenate([nuisances, line], axis=2)
+        parts.insert(2, line)
         uncertain = np.append(uncertain, np.full(line.shape[2], np.inf))
-    design = np.concatenate([by_number, nuisances], axis=2)
-    sizes = np.sqrt(np.einsum("ncm,ncm->m", design, design))
+    block = len(readings) // _ENOUGH + 1  # stations of which one is made
+    columns = np.concatenate([_in_blocks(one, rows, block) for one in parts], axis=2)
+    rows = [_blocks(n, block) for n in rows]
+    sizes = np.sqrt(np.einsum("ncm,ncm->m", *2 * [columns[:, :, :-1]]))
     sizes[sizes == 0] = 1.0
-    columns = np.concatenate([design / sizes, readings[:, :, None]], axis=2)
-    block = len(columns) // _ENOUGH + 1  # stations of which one is made
-    columns, rows = _in_blocks(columns, rows, block)
+    columns[:, :, :-1] /= sizes
     gram, root = _gram(columns, rows)
     prior = np.zeros(len(sizes) + 1)
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
@@ -130,6 +133,8 @@ def estimate(
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(columns))
     size = sizes[:known]
+    alone = np.diag(prior) + gram[:, :1].sum(axis=2)
+    unfitted = float(alone[..., -1, -1].sum() - _without_nuisances(alone, 0)[0].sum())
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         return start + found[0] / size, found[1] / np.outer(size, size)
@@ -139,18 +144,23 @@ def estimate(
         _described(likely, hum, block),
         tuple(scaled(one) for one in by_pass),
         float(logsumexp(weights, axis=0).sum()),
+        given - float(np.sum(readings**2)) + unfitted,
     )
 
 
-def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> tuple[Floats, list[int]]:
+def _blocks(stations: int, block: int) -> int:
+    return -(-stations // block)
+
+
+def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> Floats:
     """Means of neighbours times the root of their number, which keeps white noise as it is."""
-    counts = [-(-n // block) for n in rows]
-    each = zip(np.cumsum(rows) - rows, rows, counts, strict=True)
-    first = np.concatenate([begin + np.arange(count) * n // count for begin, n, count in each])
+    each = zip(np.cumsum(rows) - rows, rows, strict=True)
+    parts = [begin + np.arange(_blocks(n, block)) * n // _blocks(n, block) for begin, n in each]
+    first = np.concatenate(parts)
     number = np.diff(first, append=len(columns))
     # By one root for all: noise that remembers is not to jump where a block is one shorter.
     means = np.add.reduceat(columns, first, axis=0) / number[:, None, None]
-    return means * np.sqrt(block), counts
+    return np.asarray(means * np.sqrt(block))
 
 
 def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
@@ -192,11 +202,12 @@ def _without_nuisances(gram: Floats, known: int) -> tuple[Floats, Floats]:
     And the logarithm of the determinant of what is left out.
     """
     kept = np.array([*range(known), gram.shape[-1] - 1])
-    values, vectors = np.linalg.eigh(gram[..., known:-1, known:-1])
-    values = np.maximum(values, _RANK * values[..., -1:].max(axis=1, keepdims=True))
-    along = vectors.swapaxes(-1, -2) @ gram[..., known:-1, :][..., kept]
-    left = gram[..., kept, :][..., kept] - along.swapaxes(-1, -2) @ (along / values[..., None])
-    return left, np.log(values).sum(axis=-1)
+    inner, beside = gram[..., known:-1, known:-1], gram[..., known:-1, :][..., kept]
+    largest = np.einsum("...ii->...i", inner).max(axis=-1, initial=0.0)
+    inner = inner + _RANK * largest[..., None, None] * np.eye(inner.shape[-1])
+    left = gram[..., kept, :][..., kept]
+    left = left - beside.swapaxes(-1, -2) @ np.linalg.solve(inner, beside)
+    return left, np.linalg.slogdet(inner).logabsdet
 
 
 def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:

@@ -20,6 +20,7 @@ from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
 
+_SHAPE = 0.25  # of a curve that is taken off: exp(-4 u) and sin(3 u) are so far from a cubic
 _MIDDLE = 2.0  # times the root mean square of a bend is at most what it has midway, if lopsided
 
 
@@ -230,13 +231,16 @@ def _without(one: Pass, curve: Bent) -> Pass:
     values = np.stack([readings.values(name) for name in CLAMP_READINGS]) - curve.away
     more = curve.uncertainty if curve.shows else 0.0  # a curve is lopsided, and no parabola
     uncertain = np.hypot(one.drawn.uncertainty, more)
+    within = (one.drawn.share >= 0) & (one.drawn.share <= 1)
+    shape = _SHAPE * np.abs(curve.away[:, within]).max(axis=1)
+    middle = np.hypot(_MIDDLE * curve.uncertainty, shape)
     cleared = replace(
         readings,
         table=readings.table.assign(**_by_reading(values)),
         provenance={
             **readings.provenance,
             "zero_uncertainty": _by_reading(uncertain.tolist()),
-            "bend_uncertainty": _by_reading((_MIDDLE * curve.uncertainty).tolist()),
+            "bend_uncertainty": _by_reading(middle.tolist()),
         },
     )
     return replace(one, readings=cleared, taken=one.taken + curve.away, bends=curve.shows)

@@ -243,12 +243,14 @@ def calibrate(
 def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
-    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(fit.kinds))))
-    jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
+    freedom = fit.measured.readings.size - len(fit.kinds)
+    jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * freedom else None
     if jittered is not None:
         fit = fit.of(jittered)
-    numbers, known = _knowing_the_noise(fit, numbers, 1.0 if stated and not jittered else 0.0)
-    return fit, numbers, misfit, known
+    numbers, known, relief = _knowing_the_noise(
+        fit, numbers, 1.0 if stated and not jittered else 0.0
+    )
+    return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / freedom)), known
 
 
 def explained_by_noise(misfit: float, freedom: int) -> bool:
@@ -321,19 +323,23 @@ def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
 
 def _knowing_the_noise(
     fit: LeastSquaresFit, numbers: Floats, least: float
-) -> tuple[Floats, Estimated]:
-    """The numbers that are best for the noise that the readings show."""
+) -> tuple[Floats, Estimated, float]:
+    """The numbers that are best for the noise that the readings show.
+
+    And by how much zeros and their drift lessen the sum of squares that there was.
+    """
     measured = fit.measured
     shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
     along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
     if len(measured.rows) > 1 or measured.bend.any():
         shapes, uncertain = [*shapes, along], [measured.zero, measured.zero]
     if measured.bend.any():
-        shapes = [*shapes, 1 - along**2]
-        uncertain = [*uncertain, np.maximum(measured.bend, _NO_BEND * measured.zero)]
+        bent = 1 - along**2  # a curve of any shape: a wrong one is wrong in all passes alike
+        shapes += [bent, bent * along, bent**2, bent**2 * along]
+        uncertain += 4 * [np.maximum(measured.bend, _NO_BEND * measured.zero)]
     nuisances = np.concatenate([x[:, None, None] * fit.whitening for x in shapes], axis=2)
     shared = [i for i, kind in enumerate(fit.kinds) if kind.name == LAG]  # one pass shows none
-    known = np.concatenate(uncertain)
+    known, relieved = np.concatenate(uncertain), []
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
         for kind, column in zip(fit.kinds, jacobian.T, strict=True):
@@ -345,12 +351,13 @@ def _knowing_the_noise(
         found = estimate(
             left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
         )
+        relieved.append(found.relief)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)
         if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined
             break
         numbers = moved
-    return numbers, replace(found, by_pass=by_pass)
+    return numbers, replace(found, by_pass=by_pass), relieved[0]
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -313,6 +313,25 @@ def test_a_zero_that_is_known_better_makes_a_narrower_interval():
     assert 1.2 * widths[0] < widths[1] < widths[2]
 
 
+@pytest.mark.parametrize("curve", [lambda u: 1 - u**2, lambda u: np.sin(2.2 * u) - 0.8 * u])
+def test_a_curve_of_the_zero_is_no_fault_of_the_case_if_it_is_not_known(curve):
+    """Of eight times the noise, in each of four passes; without a word it is a fault."""
+    exact, rng = solve_sweep(SOFT), np.random.default_rng(11)
+    noise = relative_noise(exact, 0.002)
+    along = curve(np.linspace(-1, 1, len(exact.table)))
+    known = {name: 8 * size for name, size in noise.items()}
+    curved = {name: exact.values(name) + size * along for name, size in known.items()}
+    curved = replace(exact, table=exact.table.assign(**curved))
+    passes = [noisy(curved, noise, rng) for _ in range(4)]
+    assert not calibrate(passes, SOFT, ["flexural_rigidity"], noise).explains
+    stated = {"zero_uncertainty": known, "bend_uncertainty": known}
+    passes = [replace(one, provenance={**one.provenance, **stated}) for one in passes]
+    found = calibrate(passes, SOFT, ["flexural_rigidity"], noise)
+    assert found.explains
+    one = found.found["flexural_rigidity"]
+    assert one.lowest <= 1 <= one.highest
+
+
 def changed(**columns) -> Readings:
     return replace(READINGS, table=READINGS.table.assign(**columns))
 
