@@ -189,7 +189,8 @@ class Readings(OfVibrissa, SweepTable):
         """Refuse readings of a clamp that turns or leaves its line on its way."""
         if self.running != "foot_x":
             allowed = f"a foot along its line in a clamp that keeps its angle, for {who}"
-            raise InputError(f"readings over {self.running}", self.source, allowed)
+            found = f"those of {self.source}, over {self.running}"
+            raise InputError("readings", found, allowed, "use it with a sweep along x")
 
     def with_friction(self, coefficient: float) -> "Readings":
         """The same readings, taken to be of a vibrissa that rubs so much.

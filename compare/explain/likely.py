@@ -1,5 +1,7 @@
 """What a disagreement looks like: the record first, then known mistakes and faults."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from analytic import CLAMP_READINGS
@@ -15,7 +17,6 @@ from compare.measure.measurement import Measurement
 from compare.sense.record import direction
 
 _FEWEST = 10  # stations
-_EARLY = 0.02  # L; a snap-off so early is no error of a model's own
 _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
@@ -43,25 +44,26 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
     table = table[~window & sound].reset_index(drop=True)
     if len(table) < _FEWEST:
-        return "; ".join(notes) or None
+        return "; ".join([*notes, *_doubted(found)]) or None
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     true, seen = (
         np.stack([table[f"{name}_{which}"] for name in CLAMP_READINGS]) / scale[:, None]
         for which in ("reference", "candidate")
     )
     error = seen - true
+    jumps = np.array([scatter(row) for row in error])
     short = _short(found)
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
-        jumps = np.array([scatter(row) for row in error])
         slope = found.reference.running_unit[0] * slopes(table, true)
         cause = uneven(found, error, slope, jumps, scale) or one_or_two(
             found, table, true, seen, scale, jumps
         )
-    if (cause is None or cause.startswith("noise")) and (ended := _ended(found)):
-        cause = f"{ended}; {cause}" if cause else ended
+    if cause is None or cause.startswith("noise"):
+        ended = _ended(found, limits) if _agrees(error, limits, noise, jumps) else None
+        cause = "; ".join(filter(None, (ended, cause))) or None
     if notes:
         notes.append(f"beside that {cause or 'the readings disagree, and do not show why'}")
         return "; ".join(notes)
@@ -81,12 +83,16 @@ def _untouched(found: Measurement) -> str | None:
             f"{(idle & touching).sum()} stations: the sensor measures something else, or nothing"
         )
     if unknown.any():
-        reasons = found.candidate.provenance.get("unsettled") or {}
-        why = f", mostly as {max(reasons, key=reasons.__getitem__)}" if reasons else ""
-        return (
-            f"no station with a load is to be trusted: {unknown.sum()} of {len(idle)} are not{why}"
-        )
+        return f"no station with a load is to be trusted: {'; '.join(_doubted(found))}"
     return "the candidate never touches: its clamp reads no load at any station"
+
+
+def _doubted(found: Measurement) -> Iterator[str]:
+    """How many stations the candidate does not trust, and why most of them."""
+    doubted, reasons = ~found.candidate.trusted, found.candidate.provenance.get("unsettled") or {}
+    if doubted.any():
+        mostly = f", mostly as {max(reasons, key=reasons.__getitem__)}" if reasons else ""
+        yield f"{doubted.sum()} of {len(doubted)} stations are not to be trusted{mostly}"
 
 
 def _short(found: Measurement) -> list[str]:
@@ -101,14 +107,13 @@ def _short(found: Measurement) -> list[str]:
     ]
 
 
-def _ended(found: Measurement) -> str | None:
+def _ended(found: Measurement, limits: Tolerances) -> str | None:
     """That the candidate lets go early, where that is all that is wrong with it."""
     ends, (size, unit) = found.snap_off, found.reference.running_unit
     if ends.reference is None or ends.candidate is None:
         return None
     early = direction(found.reference) * (ends.reference - ends.candidate) / size
-    steps = np.median(np.abs(np.diff(found.candidate.running_values))) / size
-    if early < max(_EARLY, 3 * steps):
+    if early <= limits.snap_off + ends.uncertainty / size:
         return None
     return (
         f"the contact ends early, at {found.reference.running} = {ends.candidate / size:.4g} "
@@ -139,8 +144,10 @@ def _lone(
     )
 
 
-def _agrees(error: Floats, limits: Tolerances, noise: NoiseAllowance) -> bool:
-    """Whether the readings agree at some stations, by what they are off by there."""
+def _agrees(
+    error: Floats, limits: Tolerances, noise: NoiseAllowance, jumps: Floats | float = 0.0
+) -> bool:
+    """Whether the readings agree at some stations, beside what jumps from one to the next."""
     stations = error.shape[1]
     allowed = [noise.rms(limits.of(name, "rms"), name, stations) for name in CLAMP_READINGS]
-    return bool((rms(error) <= allowed).all())
+    return bool((rms(error) <= np.hypot(allowed, jumps)).all())

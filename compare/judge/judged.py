@@ -16,6 +16,8 @@ from compare.sense.occurrence import Occurrence
 Number: TypeAlias = float | int | bool | None
 
 _SHOWN = 6  # failures in the short form
+_SLENDER = 0.05  # strain; at more, neither theory nor a chain of hinges is a vibrissa's
+_FEW = 10  # stations
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,7 +114,21 @@ class Judged(SweepPair[Sweep]):
         ]
         if self.exceeded and self.tolerances.conventional:
             notes.append(CONVENTION)
+        if self.agrees and self.stations < _FEW:
+            notes.append(f"note: so few stations show little: {self.stations}")
+        if self.strain > _SLENDER:
+            notes.append(
+                f"note: the vibrissa bends to a strain of {self.strain:.0%}; the elastica is of "
+                f"small ones, up to {_SLENDER:.0%}"
+            )
         return tuple(notes)
+
+    @property
+    def strain(self) -> float:
+        """The largest at the clamp, by the reference."""
+        moments = [one.scale for name, one in self.disagreement.items() if name[0] == "m"]
+        beam = self.reference.beam
+        return beam.radius * max(moments) / (beam.moment_unit * beam.length)
 
     @property
     def stations(self) -> int:

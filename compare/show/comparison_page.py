@@ -85,9 +85,10 @@ def sizes(found: Comparison | SpatialComparison, worst: str) -> Iterator[Tile]:
     one = found.disagreement[worst]
     if not one.stations:
         return
-    at = along(found).at.format(place(one.at / found.reference.running_unit[0]))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
-    yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
+    name, one = max(found.disagreement.items(), key=lambda each: each[1].max)
+    at = along(found).at.format(place(one.at / found.reference.running_unit[0]))
+    yield Tile("largest single difference", short(one.max), f"{name}, {at}")
 
 
 def unexplained(budget: Parted | None) -> Iterator[Tile]:

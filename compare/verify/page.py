@@ -62,8 +62,11 @@ def verdict(rows: Sequence[Row]) -> Verdict:
         said[row.state].append(f"{row.state}: {line}; {_why(row)}".rstrip("; "))
     wrong = said["differs"]
     counts = ", ".join(f"{_count(rows, state)} {state}" for state in _COLOURS)
-    left = f"{len(said['open'])} of {len(rows)} numbers are open" if said["open"] else ""
-    claim = "Some numbers differ." if wrong else f"{left or 'All numbers agree'}, none differs."
+    claim = "All numbers agree, or differ for a known reason."
+    if said["open"]:
+        claim = f"{len(said['open'])} of {len(rows)} numbers differ, and it is open why."
+    if wrong:
+        claim = "Some numbers differ by more than is stated."
     return Verdict(not wrong, claim, f"Of {len(rows)}: {counts}.", "", wrong, said["open"])
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analytic import CLAMP_READINGS, Case, Readings, named_case, solve_sweep
+from analytic import CLAMP_READINGS, SENSED, Case, Readings, named_case, parabola, solve_sweep
 from compare import Tolerances, compare
 from compare.align.offset import without_offset
 from compare.explain.causes import physical_faults, sensor_faults, slopes
@@ -113,6 +113,20 @@ def test_who_touches_is_not_said_never_to_touch(made, said):
     assert not found.agrees
     assert said in found.likely
     assert ("never touches" in found.likely) == (made is mute)
+
+
+def test_a_contact_ends_early_only_where_it_agrees_up_to_there():
+    exact = solve_sweep(named_case("parabola"))
+    last = np.flatnonzero(exact.table["phase"] != "free")[-1]
+    early = exact.table.copy()
+    early.loc[last - 2 :, list(CLAMP_READINGS)] = 0.0
+    early = Readings(early[list(SENSED)], exact.beam, "mine")
+    assert compare(exact, early).likely.startswith("the contact ends early")
+    smaller = solve_sweep(replace(named_case("parabola"), profile=parabola(1.5, 0.5)))
+    smaller = Readings(smaller.table[list(SENSED)].fillna(0.0), exact.beam, "mine")
+    found = compare(exact, smaller)
+    assert found.disagreement["force_x"].rms > 0.05
+    assert "ends early" not in (found.likely or "")
 
 
 def thinner(sweep: Readings) -> Readings:

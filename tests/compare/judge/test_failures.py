@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, SENSED, Readings, named_case, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    SENSED,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    solve_sweep,
+)
 from compare import Limit, Tolerances, compare
 from compare.sense.noise import with_noise
 from compare.show.verdict import verdict
@@ -54,6 +63,16 @@ def test_a_snap_off_beyond_both_sweeps_is_asked_of_neither():
     assert found.agrees, found.failures
     assert found.snap_off.reference < -0.5
     assert found.likely is None
+
+
+def test_what_a_verdict_rests_on_is_said_where_that_is_little():
+    steep = Case(profile=circle(1.0, (0.0, 0.05)), sweep=Sweep(8))
+    exact = solve_sweep(steep)
+    strain = steep.beam.radius * np.abs(exact.values("moment_z")).max()
+    few, bent = compare(exact, exact).remarks
+    assert few.endswith(f": {(exact.table['phase'] != 'free').sum()}")
+    assert f"a strain of {strain:.0%}" in bent
+    assert not compare(exact_sweep("catenary"), exact_sweep("catenary")).remarks
 
 
 def test_reasons_fit_the_source():
