@@ -46,6 +46,15 @@ class Places:
             found = [e for e in found if name.startswith(e.attributes.get("prefix") or "\0")]
         return found[0] if len(found) == 1 else None
 
+    def others(self, kind: str, elements: list[Element]) -> list[Element]:
+        """All of that kind but these."""
+        mine = {id(element) for element in elements}
+        return [
+            e
+            for e in self.root.below()
+            if e.tag == kind and id(e) in self._class_of and id(e) not in mine
+        ]
+
     def defaults(self, kind: str, element: Element) -> Iterator[Element]:
         """Elements whose attributes it has by default, the nearest first."""
         name = self._class_of.get(id(element), "main")

@@ -110,11 +110,20 @@ class Texts:
         return self._attributes.get(id(element), {})
 
     def _set_default(self, kind: str, elements: list[Element], name: str, value: str) -> None:
+        """In the default that they have; in each of them if others have it, too."""
         chains = [list(self._places.defaults(kind, e)) for e in elements]
-        for chain in chains:
-            stated = next((d for d in chain if name in d.attributes), chain[0] if chain else None)
-            if stated is not None:
-                self._give(stated, name, value)
+        where: list[Element | None] = [
+            next((d for d in chain if name in d.attributes), chain[0] if chain else None)
+            for chain in chains
+        ]
+        of_all = {id(d) for d in where}
+        for other in self._places.others(kind, elements):
+            shared = {id(None), *(id(d) for d in self._places.defaults(kind, other))}
+            if of_all & shared:
+                where = [*elements]
+        for element in where:
+            if element is not None:
+                self._give(element, name, value)
             elif value:
                 self._new[kind][name] = value
 

@@ -81,6 +81,16 @@ def test_what_many_have_by_default_is_set_in_the_default(path):
     assert len(changed(MAIN, files[0].read_text())) == 2
 
 
+def test_a_default_that_others_have_too_is_left_as_it_is(path):
+    """A hand that the whisker is on would not grip without its friction."""
+    links = path.with_name("links.xml")
+    palm = '<geom name="palm" class="thin" type="sphere" size="1"/>'
+    links.write_text(LINKS.replace("<frame", f"{palm}<frame"))
+    model, _ = write(path, Edit("geom", (("condim", "1"), ("solref", "0.01 1")), (1, 2, 3)))
+    assert model.geom_condim.tolist() == [3, 1, 1, 1]
+    assert model.geom_solref[:, 0].tolist() == [0.02, 0.01, 0.01, 0.01]
+
+
 def test_springdamper_gives_way_to_the_stiffness_that_is_set(path):
     """MuJoCo would overrule it; and the damping stays as it was."""
     links = path.with_name("links.xml")
