@@ -78,9 +78,13 @@ class Contacts(NamedTuple):
     ) -> "Contacts":
         """The same, where what is no bead is a link that touches a corner."""
         fused = data.contact.exclude == FUSED
-        # Deeper than the axis of a link, MuJoCo sees the corner from behind.
+        # Deeper than the axis of a link, MuJoCo sees the corner from behind; so it sees one hidden
+        # beside another, but then the axis is outside.
         behind = sides.along & (self.distance < 0) & ~fused
         behind &= (self.normal * surface.corners.outward[sides.edge]).sum(axis=1) < 0
+        for i in behind.nonzero()[0]:
+            axis = sides.point[i] + (self.distance[i] + surface.radius) * self.normal[i]
+            behind[i] = not surface.corners.in_front(np.append(axis, 0.0))
         number = len(surface.beads) + sides.edge * len(layout.joints) + sides.link
         distance = np.where(behind, -self.distance - 2 * surface.radius, self.distance)
         return Contacts(

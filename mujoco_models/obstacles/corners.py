@@ -59,6 +59,11 @@ class Corners:
         share = ((points - begin) * run).sum(axis=1) / (run**2).sum(axis=1)
         return np.asarray(begin + np.clip(share, 0, 1)[:, None] * run)
 
+    def in_front(self, point: Floats) -> bool:
+        """Whether a place is in front of one of them, so that it is outside."""
+        away = point - self.nearest(np.arange(len(self)), point)
+        return bool(((away[:, :2] * self.outward).sum(axis=1) > 0).any())
+
     def add_to(self, spec: mujoco.MjSpec) -> None:
         inset = np.insert(self.radius * self.outward, 2, 0.0, axis=1)
         for i, (begin, end) in enumerate(self.ends - inset[:, None]):

@@ -217,12 +217,15 @@ class Walk(Generic[Model]):
 
     def _lost_from(self, last: State) -> str:
         """Why no state at rest follows: corners go through a vibrissa pressed in too far."""
+        self.model.imbalance(self._pose(self._p), last.angles)
+        why = [self._too_coarse()]
         if last.load > _DEEP * self.model.contact_stiffness * self.model.lookout.radii.max():
-            return (
+            why.append(
                 "no state at rest was found: the contact is so soft that its load presses it in "
                 "by over a quarter of the vibrissa's radius; take a stiffer one"
             )
-        return "no state at rest was found near the last one, and no snap-off"
+        found = "; ".join(filter(None, why))
+        return found or "no state at rest was found near the last one, and no snap-off"
 
     def _accept(self, p: float, state: State) -> None:
         if p != self._p:

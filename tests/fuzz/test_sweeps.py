@@ -32,3 +32,9 @@ def test_few_stations_rest_where_many_do(seed, tmp_path):
         there = reference.values(name)[::between]
         # The window of vertices that is faced moves a reading by 1e-6; another facet by 0.1.
         assert few.values(name) == pytest.approx(there, abs=1e-5 * np.abs(there).max())
+
+
+def test_a_corner_hidden_beside_another_is_not_taken_for_passed(tmp_path):
+    """It is 5e-6 L behind the one that is touched, and faces away from the link."""
+    found = trial(900351, tmp_path, wide=True)
+    assert simulate_sweep(found.case, found.settings).trusted.all()

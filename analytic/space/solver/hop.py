@@ -30,7 +30,7 @@ _SLACK = 1e-9  # of the energy: rounding
 _NEAR = 0.02  # L, between a chain's contact and the one of the closed form
 _ASTRAY = 0.05  # L; what Newton's method goes so far to find is another contact (observed: 4e-3)
 _AHEAD = (0.0, 1e-3, 4e-3)  # L of the way: a chain may hold a little longer
-_SLOW, _ASKED = 2e-3, 8  # rad, of a step after which the closed form is asked; how often
+_SLOW, _ASKED = 2e-3, 8  # rad, of a step less than the last, to ask the closed form; how often
 _HELD = 1e-3  # L; a chain that goes no farther in all that holds, others only begin to fall
 _TIP = 1e-6  # L
 _LEAST = 1e-3  # rad, rotation of a tip that is searched for
@@ -53,18 +53,18 @@ def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contac
     # No more than it had, and what the foot has done since: its step is short, but so may a
     # vibrissa be bent that little.
     limit = start.energy * (1 + _SLACK) + start.force * _apart(foot, begin)
+    found = None
     if isinstance(scene.body, Polyhedron):
         found = _over_faces(scene, scene.body, start, foot, limit)
-        if found is not None:
-            return _within(start, found)
-    found = _down(scene, start, begin, foot, limit)
-    return None if found is None else _within(start, found)
-
-
-def _within(start: Contact, found: Contact) -> Contact:
-    if _apart(found.spot.point, start.spot.point) > _FARTHEST:
+    if found is None or _is_far(found, start):
+        found = _down(scene, start, begin, foot, limit) or found
+    if found is not None and _is_far(found, start):
         raise DependsOnMotion
     return found
+
+
+def _is_far(found: Contact, start: Contact) -> bool:
+    return _apart(found.spot.point, start.spot.point) > _FARTHEST
 
 
 def _over_faces(
@@ -103,11 +103,12 @@ def _down(
     """Of a whole vibrissa, sides and all; the closed form where it comes to rest."""
     onward = (foot - begin) / _apart(foot, begin)
     for ahead in _AHEAD:
-        since, asked = start.spot.point, 0
+        since, asked, before = start.spot.point, 0, np.inf
         for touching in descend(scene, start, foot + ahead * onward):
             if _apart(touching.place, start.spot.point) > _FARTHEST:
                 return None
-            if touching.turned > _SLOW:
+            slows, before = touching.turned < min(_SLOW, before), touching.turned
+            if not slows:
                 continue
             if _apart(touching.place, since) > _HELD:
                 since, asked = touching.place, 0

@@ -155,6 +155,13 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(tm
     assert len(evaluated) < 10_000  # observed 2,900
 
 
+def test_a_beam_too_coarse_to_be_followed_says_that_it_is():
+    """A contact as stiff as any holds no beam whose first joint is beyond the object."""
+    case = Case(Beam(radius=0.0015), circle(0.008, (0.0, 0.0615)), Sweep(17))
+    (why,) = simulate_sweep(case, Settings(segments=8)).provenance["unsettled"]
+    assert "segments would do" in why
+
+
 @pytest.mark.parametrize("beam", available_beams())
 def test_contacts_on_few_segments_say_how_many_would_do(beam):
     """What is "ok" past a circle by the clamp is right to 7 % of the largest, all else is not."""
