@@ -10,6 +10,8 @@ RIGIDITY = 0.01
 """Relative; forces and moments are proportional to EI."""
 SINKS = 2e-3
 """Depth of a contact [L]."""
+SINKS_RUBBING = 4e-3
+"""The same with friction, by which harder ones chatter."""
 FORCE = 3.0
 """The largest of a usual sweep [EI/L^2]."""
 

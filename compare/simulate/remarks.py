@@ -7,7 +7,7 @@ import numpy as np
 from analytic import Beam
 from compare.simulate import treatment
 from compare.simulate.foot import on_foot
-from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
+from compare.simulate.remark import FORCE, RIGIDITY, SINKS, SINKS_RUBBING, Remark
 from compare.simulate.rigidity import (
     as_intended,
     as_stated,
@@ -44,6 +44,10 @@ _HARDEST = 30.0  # EI/L^3 times the time step [T1] squared
 # The same over the square of the number of joints: ten take 1e3 at T1/1000, forty at T1/5000
 # without chatter (`mujoco_models/quasi-static.md`).
 _HARDEST_EXPLICIT = 0.1
+# Stiffness [EI/L^3] and rate of the damper [1/T1] of a contact that rubs, times its coefficient
+# squared, at damping ratios of 0.25 to 1: of 60 stations at most 4 chatter up to 8.0e3, 10 to 20
+# at 8.6e3 to 35e3, 57 at 9e5. Lighter damping rings, at some stiffnesses.
+_HARDEST_RUBBING = 7e3
 _READS = 0.01  # of a load, by the sensor that should read all of it
 # What MuJoCo's solver leaves undone (`MeasuredBeam.undone`): 400 cost a whip of 14 links nothing,
 # 4,000 made 13 % rms of it, as contacts did not hold.
@@ -323,7 +327,7 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         return
     softest = min(treatment.moving(found) or meeting, key=lambda geom: geom.stiffness)
     sinks = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
-    if sinks > SINKS:
+    if sinks > (SINKS_RUBBING if softest.friction else SINKS):
         depth = f"{sinks:.1e} L into the object"
         if sinks * found.length > 2 * softest.radius:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
@@ -342,11 +346,15 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
                      "anything touches, as if the vibrissa were so much thicker",
                      edits=treatment.contacts(found, margin="0", gap="0"))  # fmt: skip
-    rubs = max(geom.friction for geom in meeting)
+    rubs, decay = (max(getattr(g, x) for g in meeting) for x in ("friction", "decay"))
     if rubs > 0 and found.cone == "pyramidal":
         which = ", MuJoCo's default," if rubs == 1 else ""
         yield Remark("fault", "contact", f"friction {rubs:g}{which} by a pyramidal cone chatters",
                      edits=treatment.frictionless(found))  # fmt: skip
+    elif rubs**2 * hard * decay * found.period > _HARDEST_RUBBING:
+        yield Remark("fault", "contact", f"friction {rubs:g} chatters in contacts of {hard:.2g} "
+                     f"EI/L^3 whose damper acts within {1 / decay / found.period:.2g} T1",
+                     edits=treatment.rubbing(found, rubs))  # fmt: skip
     elif rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "
                      'condim="1"')  # fmt: skip

@@ -15,6 +15,7 @@ HARD = "0.9999 0.9999 0.001"
 _STEPS = 50  # in T1; 100 and 200 do no better at 0.05 L/T1, 25 leave half a per cent
 _SAFE = 0.5  # of the longest stable step, which a contact makes shorter
 _CONTACT = 4e3  # EI/L^3; of the softest contact
+_RUBBING, _SWINGING = 900.0, 0.25  # the same with friction, and its contact's damping ratio
 _IMPEDANCE = 0.9  # with 0.99 a quarter of all stations chatter
 _BESIDE = 0.01  # of the first joint's place
 _DAMPING = 0.05  # ratio
@@ -66,6 +67,17 @@ def hardened(found: MeasuredBeam) -> tuple[Edit, ...]:
     own = contacts(found, solref=hardest(found), solimp=f"{_IMPEDANCE} {_IMPEDANCE} 0.001",
                    priority="1")  # fmt: skip
     return (*steps(found), *own)
+
+
+def rubbing(found: MeasuredBeam, friction: float) -> tuple[Edit, ...]:
+    """Contacts that swing rather than stop at once, as soft as they may be, if these can rub so."""
+    if friction == 1:
+        return frictionless(found)
+    wanted = _RUBBING * as_intended(found) / found.length**3
+    lightest = max(geom.weight for geom in moving(found))
+    swing = 1 / math.sqrt(wanted * (1 - _IMPEDANCE) * lightest)
+    return contacts(found, solref=f"{number(swing / _SWINGING)} {_SWINGING}",
+                    solimp=f"{_IMPEDANCE} {_IMPEDANCE} 0.001", priority="1")  # fmt: skip
 
 
 def frictionless(found: MeasuredBeam) -> tuple[Edit, ...]:

@@ -79,7 +79,7 @@ def _geom(
         middle = piece.ends.mean(axis=0)
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
     start, end = sorted(((piece.ends - clamp) @ axes[1]).tolist())
-    stiffness, time_constant = _stiffness(model, stated("solref"), stated("solimp"), weight)
+    stiffness, time_constant, decay = _pushes(model, stated("solref"), stated("solimp"), weight)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
     return Geom(
@@ -93,26 +93,28 @@ def _geom(
         weight=weight,
         stiffness=stiffness,
         time_constant=time_constant,
+        decay=decay,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
     )
 
 
-def _stiffness(
+def _pushes(
     model: mujoco.MjModel, solref: Floats, solimp: Floats, weight: float
-) -> tuple[float, float]:
-    """Force over penetration at rest, and the time constant if solref states one.
+) -> tuple[float, float, float]:
+    """Force over penetration at rest, the time constant if solref states one, and the damper's.
 
     The force is k/((1 - d) A) times the depth, with MuJoCo's k, impedance d and the body's inverse
     mass A; see MuJoCo's documentation, "Solver parameters".
     """
-    time_constant, ratio = solref.tolist()
     impedance = min(float(solimp[0]), 0.9999)
+    time_constant, ratio = solref.tolist()
     if time_constant > 0:
-        stiffness = 1 / (max(time_constant, 2 * model.opt.timestep) * ratio) ** 2
+        taken = max(time_constant, 2 * model.opt.timestep)
+        stiffness, decay = 1 / (taken * ratio) ** 2, 2 / (impedance * taken)
     else:
-        stiffness, time_constant = -time_constant, np.nan
-    return float(stiffness / ((1 - impedance) * weight)) if weight else np.inf, time_constant
+        stiffness, decay, time_constant = -time_constant, -ratio, np.nan
+    return float(stiffness / ((1 - impedance) * weight)) if weight else np.inf, time_constant, decay
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:

@@ -267,3 +267,13 @@ def test_limits_and_friction_matter_as_far_as_they_hold(tmp_path, given, subject
     """MuJoCo's are soft: by how much, their solref says, in the model's own unit of time."""
     found = changed(tmp_path, Chain(), ("<joint ", f"<joint {given} "))
     assert (subject in {fault.subject for fault in found.faults}) is named
+
+
+def test_friction_takes_contacts_that_are_softer(tmp_path):
+    """As hard as steps allow, 57 of 60 stations of an antenna chattered; as fixed, 3."""
+    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
+    before = changed(tmp_path, Chain(), *rubbing)
+    assert any("friction 0.5 chatters" in str(fault) for fault in before.faults)
+    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection
+    assert after.sound
+    assert {geom.friction for geom in after.found.geoms} == {0.5}
