@@ -10,6 +10,7 @@ from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _WAY = 2.0  # L; of the foot, from first touch to release
+_BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _PULLS = 100.0  # of a sweep's force; a sensor on a foot that nothing drives feels 1e-4 of it
 
 
@@ -58,7 +59,10 @@ def _reach(found: MeasuredBeam) -> Iterator[Remark]:
                      f"sweep takes up to {_WAY:g} L",
                      edits=(Edit("joint", (("limited", "false"),), (reach.joint,)),))  # fmt: skip
     pull = reach.stiffness * _WAY * length
-    if reach.actuator is None and pull > _PULLS * FORCE * as_intended(found) / length**2:
+    against = reach.gain * (_WAY * length if reach.by_place else SPEED * length / found.period)
+    felt = _PULLS * FORCE * as_intended(found) / length**2
+    undriven = reach.actuator is None
+    if (undriven and pull > felt) or (reach.gain and pull > _BEHIND * against):
         yield Remark("fault", "foot", f"its slide has a spring, {reach.stiffness:.3g}, by a default"
                      " perhaps, which pulls it back",
                      edits=(Edit("joint", (("stiffness", "0"),), (reach.joint,)),))  # fmt: skip

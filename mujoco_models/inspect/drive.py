@@ -36,6 +36,8 @@ class Reach:
     force: float  # of an actuator
     follows: bool  # whether it does what it is given at once
     stiffness: float  # of a spring on the slide itself
+    gain: float = 0.0  # of an actuator: its force for a length behind, or for a speed
+    by_place: bool = False
 
 
 def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
@@ -71,6 +73,8 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
         force=force if limited else math.inf,
         follows=bool(model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE),
         stiffness=spring,
+        gain=-float(model.actuator_biasprm[actuator, 1 if by_place else 2]) * gear**2,
+        by_place=bool(by_place),
     )
 
 

@@ -126,11 +126,20 @@ def test_what_stops_contacts_or_the_drive_is_switched_off(tmp_path, old, new, su
     assert after.inspection.sound
 
 
-def test_a_spring_on_a_slide_that_nothing_drives_is_taken_off(tmp_path):
-    """A default of all joints; 95 % of a force is off, as the sensor feels the foot pulled back."""
-    path = on_rail(tmp_path, ('name="rail"', 'name="rail" stiffness="500"'), (MOTOR, "</mujoco>"))
+@pytest.mark.parametrize(
+    ("drive", "sound"),
+    [
+        ("", False),
+        ('<position joint="rail" kp="5e3"/>', False),
+        ('<position joint="rail" kp="5e4"/>', True),
+    ],
+)
+def test_a_spring_on_a_slide_is_taken_off_where_it_is_felt(tmp_path, drive, sound):
+    """A default of all joints: the sensor feels the foot pulled back, or the foot stays behind."""
+    driven = f"<actuator>{drive}</actuator></mujoco>"
+    path = on_rail(tmp_path, ('name="rail"', 'name="rail" stiffness="500"'), (MOTOR, driven))
     before, after = fixed(path)
-    assert faults_in(before) == {"foot"}
+    assert faults_in(before) == (set() if sound else {"foot"})
     assert after.inspection.sound
 
 
