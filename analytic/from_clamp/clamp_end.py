@@ -113,7 +113,6 @@ class ClampEnd(NamedTuple):
         )
 
     def place(self, arc_length: Floats) -> Reached:
-        """A place of the vibrissa."""
         end = self.march(arc_length)
         sin, cos = np.sin(self.direction), np.cos(self.direction)
         return Reached(

@@ -27,7 +27,6 @@ class LocatedContact(NamedTuple):
     eta: Floats
 
     def surface(self, radius: Floats | float) -> tuple[Floats, Floats]:
-        """The contact on the body's surface."""
         return self.xi - radius * np.sin(self.alpha), self.eta + radius * np.cos(self.alpha)
 
 
@@ -66,12 +65,10 @@ class SweptVibrissa(NamedTuple):
         return cls(Vibrissa.of(beam, held), is_plain(beam, held), -1.0 if rightward else 1.0)
 
     def clamp_end(self, sensed: Floats) -> ClampEnd:
-        """The clamp's end of the vibrissa."""
         way = self.way
         return ClampEnd.of(way * sensed[1], sensed[2], way * sensed[3], self.vibrissa)
 
     def surface(self, contact: LocatedContact) -> tuple[Floats, Floats]:
-        """Contacts on the body's surface."""
         return contact.surface(self.vibrissa.radius_at(contact.arc_length))
 
     def contact(self, sensed: Floats) -> LocatedContact:

@@ -76,7 +76,6 @@ def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dic
 
 
 def checked_noise(noise: object, columns: tuple[str, ...] = SENSED) -> dict[str, float]:
-    """The noise that a user states."""
     if not isinstance(noise, Mapping):
         remedy = "`relative_noise(readings, 0.01)` makes it from a share of the largest magnitudes"
         raise InputError("noise", repr(noise), "a standard deviation by column", remedy)

@@ -28,7 +28,6 @@ def clamp_axes(tangent: Floats) -> Floats:
 
 
 def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, Floats]:
-    """The six components of a sweep in a frame."""
     return _turned(readings, _axes(readings, frame))
 
 

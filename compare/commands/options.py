@@ -172,5 +172,4 @@ def require_fraction(option: str, value: float, usual: str) -> None:
 
 
 def words(text: str) -> list[str]:
-    """The words between the commas of an option."""
     return [word.strip() for word in text.split(",")]

@@ -172,7 +172,6 @@ class Account:
         return max(sizes, key=lambda name: float(sizes[name]))
 
     def common(self) -> dict[str, Any]:
-        """What every budget has of it."""
         whole = self.shared.rms(self.total)
         return {
             "parts": {

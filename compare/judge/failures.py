@@ -97,7 +97,6 @@ def _beyond(
     weight: int = 0,
     overall: bool = False,
 ) -> Iterator[Failure]:
-    """A size beyond its limit, which noise or an uncertainty widens."""
     if size > widened:
         beside = f" beside noise of {noise:.1e}{unit}" if noise else ""
         most = f"allowed {limit:.2e}{unit}{beside}"

@@ -79,7 +79,6 @@ class Judged(SweepPair[Sweep]):
 
     @cached_property
     def exceeded(self) -> tuple[Failure, ...]:
-        """Every limit that is exceeded."""
         return tuple(self._failures())
 
     @property

@@ -25,7 +25,6 @@ class Rate:
 
     @classmethod
     def of(cls, readings: "Readings") -> "Rate | None":
-        """The rate of a sweep, by its provenance."""
         motion = readings.provenance.get("motion")
         if not isinstance(motion, Mapping):
             return None

@@ -49,7 +49,6 @@ class Measurement(SweepPair[Readings]):
 
     @property
     def snap_off(self) -> Occurrence:
-        """The end of contact."""
         return self.events["snap_off"]
 
     def phase_agreement(self) -> dict[str, float]:

@@ -83,7 +83,6 @@ class Job(_Stated):
 
     @property
     def kind(self) -> str:
-        """At rest in the plane, in motion, or of a [model]."""
         if self.model is not None:
             return MODEL
         return PLANE if self.motion is None else MOTION
@@ -118,12 +117,10 @@ class SpaceJob(_Stated):
 
     @property
     def kind(self) -> str:
-        """In space."""
         return SPACE
 
     @property
     def body(self) -> "Body":
-        """What is swept past."""
         return self.case.body
 
 

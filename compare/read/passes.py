@@ -58,7 +58,6 @@ class Pass:
 
 
 def usable(passes: list[Pass]) -> list[Pass]:
-    """The passes, none of which has a fault."""
     for one in passes:
         if one.fault is not None:
             raise one.fault

@@ -60,7 +60,6 @@ class RunRecord(BaseModel):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The numerics of the candidate."""
         settings = self.provenance.get("settings")
         return settings if isinstance(settings, dict) else {}
 

@@ -50,7 +50,6 @@ class TomlFile:
         return cls(path, text, tables)
 
     def table(self, name: str) -> Any:  # noqa: ANN401  # whatever it is
-        """A table that there has to be."""
         if name not in self.tables:
             raise InputError(f"{self.path}: [{name}]", "missing", "given", "add the table")
         return self.tables[name]

@@ -59,7 +59,6 @@ def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[s
 
 
 def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Readings:
-    """The readings with white noise added."""
     rng = np.random.default_rng(seed)
     noisy = {
         name: readings.values(name)

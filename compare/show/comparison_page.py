@@ -131,7 +131,6 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
 def places_table(
     found: Comparison | SpatialComparison, caption: str, events: Mapping[str, Occurrence]
 ) -> Table:
-    """Where events are in both sweeps."""
     size, _ = found.reference.running_unit
     unsure = any(pair.uncertainty for pair in events.values())
     rows = []

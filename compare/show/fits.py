@@ -117,7 +117,6 @@ def band_summary(found: ConvexBand, beam: Beam) -> Iterator[Block]:
 
 
 def calibration_document(calibration: Calibration) -> dict[str, Any]:
-    """What ``calibration.json`` holds."""
     passes, correlation = calibration.passes, calibration.noise.correlation.tolist()
     return {
         "case": calibration.case.name,
@@ -140,7 +139,6 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
 
 
 def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
-    """What ``object.json`` holds."""
     document: dict[str, Any] = {
         "family": found.family,
         "found": found.found,

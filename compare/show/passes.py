@@ -91,7 +91,6 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
 def passes_document(
     passes: Sequence[Pass], found: Sequence[Repeats], lag: Lag | None
 ) -> dict[str, Any]:
-    """What ``passes.json`` holds."""
     said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift", "bends")
     return {
         "passes": [

@@ -42,7 +42,6 @@ def timestep(found: MeasuredBeam) -> float:
 
 
 def steps(found: MeasuredBeam) -> tuple[Edit, ...]:
-    """Integrator and time step."""
     return (Edit("option", (("timestep", number(timestep(found))), ("integrator", "discrete"))),)
 
 

@@ -27,7 +27,6 @@ def report(
 
 
 def write_summary(rows: Iterable[Mapping[str, Any]], folder: Path) -> None:
-    """Write ``summary.json`` and ``summary.md`` into `folder`."""
     ordered = sorted(rows, key=lambda row: str(row["name"]))
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "summary.json", json.dumps(ordered, indent=2))

@@ -113,7 +113,6 @@ class Cable(Balls):
         return spec.body(self._name(link))
 
     def within(self, link: int, s: Floats) -> Floats:
-        """In the frame of the segment."""
         across, along = self.layout.within(link, s)
         if link < self._turning:
             along = along - self._vertices[0]

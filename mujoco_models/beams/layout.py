@@ -157,7 +157,6 @@ class Layout:
         return max(end, min(_COARSE / len(self.joints[first:]), _NEAR))
 
     def tip_angle(self, angles: Floats) -> float:
-        """Slope angle of the tip."""
         return np.pi / 2 + float(angles.sum()) + self._tip_turn
 
     @cached_property
@@ -183,7 +182,6 @@ class Layout:
 
 
 def turned(vector: Floats, angle: float | Floats) -> Floats:
-    """A vector, turned to the left."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
 

@@ -58,7 +58,6 @@ class HingedLinks:
         return spec.body(link_name(link))
 
     def within(self, link: int, s: Floats) -> Floats:
-        """In the frame of the link."""
         across, along = self.layout.within(link, s)
         return np.column_stack([across, along, np.zeros_like(along)])
 
@@ -98,7 +97,6 @@ class Balls:
 
 
 def link_name(link: int) -> str:
-    """Name of a link's body."""
     return _prefix(link) + _own_name(link)
 
 
@@ -116,7 +114,6 @@ def mass_by_length(layout: Layout) -> float:
 
 
 def about_z(turn: float) -> Floats:
-    """A turn about z."""
     return np.array([np.cos(turn / 2), 0, 0, np.sin(turn / 2)])
 
 

@@ -94,11 +94,9 @@ class UniversalLinks(HingedLinks):
         data.qpos[0::2] = angles
 
     def angles(self, data: mujoco.MjData) -> Floats:
-        """The first hinges' angles."""
         return np.array(data.qpos[0::2])
 
     def moments(self, force: Floats) -> Floats:
-        """The moments at the first hinges."""
         return force[0::2]
 
     def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:

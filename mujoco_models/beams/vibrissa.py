@@ -35,7 +35,6 @@ class Vibrissa:
 
     @property
     def is_straight(self) -> bool:
-        """Whether it is straight at rest."""
         return self.rest.natural == 0
 
     @property

@@ -62,7 +62,6 @@ class _Written(SteppedModel):
         return bool(self.data.ncon and self.data.contact.dist.min() < 0)
 
     def clamp(self) -> Clamp:
-        """By the sensors."""
         fx, fy, mz = by_sensors(self.data, 0.0)
         force, moment = self._beam.force_unit, self._beam.moment_unit
         return Clamp(fx / force, fy / force, mz / moment)
@@ -72,7 +71,6 @@ class _Written(SteppedModel):
         return {"phase": "tangent" if self.touches else "free", "status": "ok"}
 
     def step(self, speed: float) -> None:
-        """By the motor."""
         self.time = self.now
         self.data.ctrl[0] = -speed * self._unit
         self._advance()

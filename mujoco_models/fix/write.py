@@ -140,7 +140,6 @@ class Texts:
         self._put_into(element, new.text)
 
     def _put_into(self, element: Element, text: str) -> None:
-        """As its first child."""
         end = self._end_of_tag(element)
         if self._text(element.file)[end - 2 : end] == b"/>":
             self._change(element.file, end - 2, end, f">{text}</{element.tag}>")

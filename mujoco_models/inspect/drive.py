@@ -145,7 +145,6 @@ def movable(model: mujoco.MjModel, mine: set[int]) -> tuple[str, ...]:
 
 
 def joints_of(model: mujoco.MjModel, body: int) -> range:
-    """The joints of a body."""
     first = int(model.body_jntadr[body])
     return range(first, first + int(model.body_jntnum[body]))
 

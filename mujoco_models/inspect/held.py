@@ -72,7 +72,6 @@ class HeldModel:
         mujoco.mj_forward(self.model, self.data)
 
     def load(self, force: Floats, torque: Floats) -> None:
-        """Load the tip."""
         self._force[:], self._torque[:] = force, torque
 
     def begin(self, first: Floats, second: Floats) -> Floats:
@@ -91,7 +90,6 @@ class HeldModel:
         return np.array(self.data.xmat[body].reshape(3, 3))
 
     def sensed(self, sensor: int) -> Floats:
-        """What a sensor reads."""
         first = self.model.sensor_adr[sensor]
         return np.array(self.data.sensordata[first : first + 3])
 

@@ -58,7 +58,6 @@ Held: TypeAlias = HeldChain | HeldRod
 
 
 def hold(model: mujoco.MjModel, parts: Parts) -> Held:
-    """Hold the foot of a model."""
     return HeldChain(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
@@ -144,7 +143,6 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
 
 
 def sweep_axes(held: Held) -> Floats:
-    """The axes of the sweep in the world frame."""
     model, data = held.model, held.data
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     ways = np.diff(nodes, axis=0)

@@ -107,7 +107,6 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
 
 
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
-    """The axis of a geom in the frame of its body."""
     kind = int(model.geom_type[geom])
     centre, half = np.zeros(3), np.zeros(3)
     if kind in _SLENDER:
@@ -271,7 +270,6 @@ def _sensor(
 
 
 def _named(option: str, name: str, what: str, known: list[str]) -> int:
-    """Number of what has that name."""
     if name in known:
         return known.index(name)
     names = [one for one in known if one]

@@ -118,7 +118,6 @@ def _pushes(
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:
-    """Of a geom, or of what has none."""
     if number < 0:
         return "the flex"
     own, body = model.geom(number).name, model.body(model.geom_bodyid[number]).name

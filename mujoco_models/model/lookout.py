@@ -66,11 +66,9 @@ class MujocoScene:
         self._chosen = np.arange(len(beads))
 
     def bead_positions(self, beads: Integers) -> Floats:
-        """As MuJoCo has them."""
         return np.asarray(self._data.geom_xpos[self._beads[beads], :2])
 
     def show(self, window: int) -> None:
-        """By the obstacle itself."""
         self._obstacle.show(self._model, self._geom, window)
 
     def collide(self, beads: frozenset[int]) -> None:

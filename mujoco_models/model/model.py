@@ -149,11 +149,9 @@ class BeamModel:
         self.evaluate()
 
     def stiffness(self, angles: Floats) -> Floats:
-        """That of the beam's joints."""
         return self.beam.stiffness(angles)
 
     def elastic_moments(self) -> Floats:
-        """The beam's own moment at each joint."""
         return self.beam.moments(self.data.qfrc_passive)
 
     def creep(self, timestep: float) -> float:
@@ -211,11 +209,9 @@ class BeamModel:
         return rise
 
     def joint_positions(self) -> Floats:
-        """Where the joints are."""
         return np.asarray(self.data.xanchor[self._joints, :2])
 
     def bead_positions(self, beads: Integers) -> Floats:
-        """Where beads are."""
         return np.asarray(self.data.geom_xpos[self.beads[beads], :2])
 
     def out_of_plane(self) -> float:

@@ -41,7 +41,6 @@ def parts_at_rest(case: Case, settings: Settings, engine: str = "MuJoCo") -> tup
 
 
 def require_no_friction(friction: float, engine: str = "MuJoCo") -> None:
-    """Refuse friction at rest."""
     if friction != 0:
         allowed = f"0 for {engine} at rest"
         remedy = "with friction many states are at rest, and the motion decides which: run it with "

@@ -22,11 +22,9 @@ class Links:
     tip: Floats  # in the frame of the last body
 
     def has(self, contact: int) -> bool:
-        """Whether a contact is one of the vibrissa's geoms."""
         return not self.geoms.isdisjoint(self.data.contact.geom[contact].tolist())
 
     def arc_length(self, contact: int, inward: Floats) -> float:
-        """Along the link; a piece that is fixed to the foot ends at the first joint."""
         geom = next(g for g in self.data.contact.geom[contact].tolist() if g in self.geoms)
         point = self.data.contact.pos[contact] + radius_of(self.model, geom) * inward
         body = int(self.model.body_weldid[self.model.geom_bodyid[geom]])
@@ -39,7 +37,6 @@ class Links:
         return float((self.nodes[link] + along) / self.nodes[-1])
 
     def tip_direction(self) -> Floats:
-        """Of the last link."""
         return self._direction(len(self.chain) - 1)
 
     def elastic_energy(self) -> float:
@@ -71,11 +68,9 @@ class Edges:
     compliances: Floats
 
     def has(self, contact: int) -> bool:
-        """Whether a contact is one of its flex."""
         return self.rod.flex in self.data.contact.flex[contact].tolist()
 
     def arc_length(self, contact: int, inward: Floats) -> float:
-        """Of the nearest edge."""
         radius = self.model.flex_radius[self.rod.flex]
         point = self.data.contact.pos[contact] + radius * inward
         vertices = self.data.flexvert_xpos[list(self.rod.vertices)]
@@ -88,7 +83,6 @@ class Edges:
         return float(max(self.nodes[nearest] - left, 0) / self.nodes[-1])
 
     def tip_direction(self) -> Floats:
-        """Of the last edge."""
         edge = np.diff(self.data.flexvert_xpos[list(self.rod.vertices[-2:])], axis=0)[0]
         return np.asarray(edge / np.linalg.norm(edge))
 

@@ -75,7 +75,6 @@ class LeastSquaresFit(ABC):
         return self._missed(self.expected(numbers))
 
     def jacobian(self, numbers: Floats) -> Floats:
-        """Derivatives of the misses."""
         found = self._solved(numbers)
         columns = np.zeros((self.measured.readings.size, len(numbers)))
         if found is None:
@@ -106,7 +105,6 @@ class LeastSquaresFit(ABC):
         return scaled
 
     def best_from(self, numbers: Floats) -> tuple[Floats, float]:
-        """Least squares."""
         with np.errstate(divide="ignore", invalid="ignore"):  # where nothing touches, no slope
             found = least_squares(
                 self.misses,

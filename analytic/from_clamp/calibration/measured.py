@@ -58,7 +58,6 @@ class Measured:
 
     @property
     def passes(self) -> list[slice]:
-        """Where each pass is."""
         ends = np.cumsum(self.rows).tolist()
         return [slice(end - n, end) for n, end in zip(self.rows, ends, strict=True)]
 
@@ -79,7 +78,6 @@ class Measured:
         )
 
     def at(self, kept: Booleans) -> "Measured":
-        """Some of the stations."""
         rows = tuple(int(kept[one].sum()) for one in self.passes)
         return replace(self, foot_x=self.foot_x[kept], readings=self.readings[:, kept], rows=rows)
 

@@ -138,7 +138,6 @@ The clamp is fitted by its compliance, of which a rigid one is an end, ``offset`
 
 
 def checked_unknowns(names: object, case: Case) -> tuple[str, ...]:
-    """The names of what is to be found."""
     if isinstance(names, str):
         names = (names,)
     known = ", ".join(UNKNOWNS)

@@ -99,7 +99,6 @@ class ObjectFit(LeastSquaresFit):
         self.start = np.clip(np.append(start, others), self.lowest, self.highest)
 
     def of_object(self, numbers: Floats) -> Floats:
-        """The numbers of the contour alone."""
         return numbers[: len(self.family.kinds)]
 
     def sought(self, numbers: Floats) -> Sought:

@@ -83,7 +83,6 @@ class _Motion:
         )
 
     def beside(self, along: float) -> int:
-        """The station that is nearest."""
         return int(np.abs(self.along - along).argmin())
 
     def beads(self, station: int) -> tuple[Floats, Floats]:

@@ -76,7 +76,6 @@ def foot_label(readings: Readings) -> str:
 
 
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
-    """A reading as it is drawn."""
     if name in CLAMP_READINGS:
         return in_unit(readings, name)
     return on_vibrissa(1 - judged.shortfall)

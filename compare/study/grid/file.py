@@ -80,7 +80,6 @@ _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
 
 
 def expand(file: TomlFile, content: StudyFile, base: Base) -> tuple[Axis, ...]:
-    """Expand the axes of a study file."""
     lists: list[dict[str, list[Value]]] = []
     sampled: dict[str, Interval] = {}
     reader = _AxisReader(file, base)

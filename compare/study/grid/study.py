@@ -109,7 +109,6 @@ class Study:
 
     @property
     def in_space(self) -> bool:
-        """Whether its sweeps are in space."""
         return "body.kind" in self.base
 
     @property

@@ -92,7 +92,6 @@ _AT_ONCE = 5000  # rows in memory
 
 
 def numbers(plan: Plan) -> dict[str, int]:
-    """The number of each run, by its id."""
     return {run.id: number for number, run in enumerate(plan)}
 
 

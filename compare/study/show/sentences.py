@@ -82,7 +82,6 @@ def _along(axis: str, line: Line, question: Question) -> str:
 
 
 def _law(x: np.ndarray, y: np.ndarray) -> str:
-    """The power law, if there is one."""
     if len(x) < 3 or x.min() <= 0 or y.min() <= 0:
         return ""
     log_x, log_y = np.log(x), np.log(y)

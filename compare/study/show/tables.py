@@ -90,7 +90,6 @@ def _zeros(x: Floats, y: Floats) -> Floats:
 def _grouped(
     done: pd.DataFrame, keys: Sequence[str]
 ) -> Iterator[tuple[dict[str, object], pd.DataFrame]]:
-    """The runs by the values of `keys`."""
     if not keys:
         yield {}, done
         return
