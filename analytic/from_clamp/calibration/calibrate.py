@@ -357,7 +357,8 @@ def _knowing_the_noise(
         if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined
             break
         numbers = moved
-    return numbers, replace(found, by_pass=by_pass), relieved[0]
+    curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
+    return numbers, replace(found, by_pass=by_pass), relieved[0] if curved else 0.0
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -109,7 +109,9 @@ class Walker(ABC, Generic[Held]):
 
     def _end(self, contact: Held, travel: float) -> str:
         """Note how a contact ends; the status of stations up to where the vibrissa is clear."""
-        released = contact.force < LOOSE
+        # One that has only begun is as loose, but the straight vibrissa is on its way in.
+        leaves = self._way.gap(travel + _BESIDE).size > self._way.gap(travel).size
+        released = contact.force < LOOSE and leaves
         self._note("release" if released else "slip-off", travel)
         return "ok" if released else "slipped off"
 
