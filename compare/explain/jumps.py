@@ -86,10 +86,10 @@ def _humming(found: Measurement, error: Floats) -> str | None:
 
 def _jittering(found: Measurement, error: Floats, slopes: Floats) -> str | None:
     """A foot that is not where the stage says, by another distance at each station."""
-    known = np.isfinite(slopes).all(axis=0)
+    known, whole = np.isfinite(slopes).all(axis=0), np.sum(error**2)
     error, slopes = error[:, known], slopes[:, known]
     steep = np.sum(slopes**2, axis=0)
-    if not (known.any() and steep.all()):
+    if not steep.all() or np.sum(error**2) <= _JUMPING * whole:  # most of it is elsewhere
         return None
     off = np.sum(error * slopes, axis=0) / steep
     along = np.sum(off**2 * steep) >= _ALONG * np.sum(error**2)
