@@ -10,6 +10,8 @@ from pathlib import Path
 
 from analytic.problem.errors import InputError
 
+SOFTWARE = "vibrissa testbed"
+"""What pictures, films and clouds of points say that they are of."""
 _MARK = b"vibrissa"  # in what is written, but for tables, which begin with a word of their own
 _AFTER_A_WORD = re.compile(rb'[":,\n]')
 _NAMED_BY_A_WORD = (".csv", ".json")
@@ -66,6 +68,12 @@ def own_files() -> Iterator[None]:
         yield
     finally:
         _guarded.reset(before)
+
+
+def remove_own(path: Path) -> None:
+    """Remove what an earlier run wrote; what is somebody else's stays."""
+    if path.is_file() and _MARK in path.read_bytes():
+        path.unlink()
 
 
 def _foreign(path: Path, unfinished: Path) -> bool:

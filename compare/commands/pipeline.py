@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from analytic import CLAMP_READINGS, InputError, Readings
+from analytic.problem.files import remove_own
 from compare.commands import terminal
 from compare.commands.output import waiting
 from compare.commands.sweeping import AnyReadings, printed, simulated, solved, sweep_file
@@ -99,7 +100,7 @@ def _filmed(
     from compare.show.animation import plane, space
 
     if frames is None:
-        (folder / "animation.gif").unlink(missing_ok=True)
+        remove_own(folder / "animation.gif")
         return None
     with terminal.progress("frames", frames) as advance:
         if isinstance(comparison, Comparison):

@@ -13,7 +13,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pydantic_core import to_json
 
-from analytic.problem.files import write_whole
+from analytic.problem.files import SOFTWARE, write_whole
 from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
 
 _THEMED = {
@@ -46,7 +46,7 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    return _drawn(figure, "png", dpi=dots_per_inch, metadata={"Software": "vibrissa testbed"})
+    return _drawn(figure, "png", dpi=dots_per_inch, metadata={"Software": SOFTWARE})
 
 
 def save_figure(figure: Figure, path: Path) -> Path:

@@ -8,6 +8,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from analytic.problem.arrays import Floats, Integers, Words
+from analytic.problem.files import SOFTWARE
 from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
 from analytic.space.problem.bodies.support import spread
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
@@ -116,7 +117,7 @@ def solid_ply(faces: Floats) -> str:
     header = [
         "ply",
         "format ascii 1.0",
-        "comment vibrissa testbed",
+        f"comment {SOFTWARE}",
         f"element vertex {len(corners)}",
         *(f"property double {name}" for name in "xyz"),
         f"element face {len(faces)}",

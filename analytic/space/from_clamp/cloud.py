@@ -8,7 +8,7 @@ import pandas as pd
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from analytic.problem.files import as_path, write_whole
+from analytic.problem.files import SOFTWARE, as_path, write_whole
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.readings import CONTACT_POINT, NORMAL
 
@@ -87,7 +87,7 @@ def write_ply(cloud: Cloud, path: str | Path) -> Path:
     header = [
         "ply",
         "format ascii 1.0",
-        "comment vibrissa testbed",
+        f"comment {SOFTWARE}",
         f"element vertex {len(cloud.points)}",
         *(f"property double {name}" for name in names),
         "end_header",

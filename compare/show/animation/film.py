@@ -11,10 +11,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from analytic import InputError, Readings
 from analytic.problem.arrays import Integers, Words
-from analytic.problem.files import whole_file, write_whole
+from analytic.problem.files import SOFTWARE, whole_file, write_whole
 from analytic.space import SpatialReadings
 from compare.show import style
 
@@ -77,10 +78,12 @@ def write_film(
         images.append(image)
         advance()
     written = [_save_gif(images, folder / "animation.gif")]
+    own = PngInfo()
+    own.add_text("Software", SOFTWARE)
     shown = [touching[round(share * (len(touching) - 1))] for share in _SHARES]
     for number, image in enumerate(_images(figure, parts, shown, _STILL_DPI), start=1):
         buffer = io.BytesIO()
-        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI))
+        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI), pnginfo=own)
         written.append(write_whole(folder / f"still-{number}.png", buffer.getvalue()))
     return written
 
@@ -113,6 +116,6 @@ def _save_gif(images: Sequence[Image.Image], path: Path) -> Path:
     with whole_file(path) as unfinished:
         first.save(
             unfinished, "GIF", save_all=True, append_images=others, duration=durations, loop=0,
-            optimize=False,
+            optimize=False, comment=SOFTWARE.encode(),
         )  # fmt: skip
     return path

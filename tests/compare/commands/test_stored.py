@@ -136,3 +136,20 @@ def test_no_result_replaces_a_file_of_somebody_else(tmp_path):
         done.refused(f"output = out/{name}: must be free, or from an earlier run")
         assert file.read_bytes() == content
         file.write_bytes(own)
+
+
+@pytest.mark.slow
+def test_a_film_of_somebody_else_stays(tmp_path):
+    run = ("run", "catenary", "--stations", "12", "--segments", "6", "--out", "out")
+    film = tmp_path / "out" / "animation.gif"
+    film.parent.mkdir()
+    film.write_bytes(b"GIF89a of a holiday")
+    assert vibrissa(*run, cwd=tmp_path).returncode < 2
+    vibrissa(*run, "--film", cwd=tmp_path).refused("output = out/animation.gif: must be free")
+    assert film.read_bytes() == b"GIF89a of a holiday"
+    film.unlink()
+    for _ in range(2):
+        assert vibrissa(*run, "--film", cwd=tmp_path).returncode < 2
+        assert film.is_file()
+    assert vibrissa(*run, cwd=tmp_path).returncode < 2
+    assert not film.exists()  # it would be of another sweep
