@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 _LONGEST = 24  # characters that are never folded
+_WIDEST = 1000  # characters of a table
 
 
 def print_line(text: str) -> None:
@@ -95,13 +96,23 @@ def show(*blocks: Block) -> None:
             case Items():
                 _list(block.said)
             case Table():
-                wide = console()
-                table = _table(block)
-                if Measurement.get(wide, wide.options, table).minimum >= wide.width:
-                    table.padding = 0
-                wide.print(table)
+                _print_table(_table(block))
             case Verdict():
                 _verdict(block)
+
+
+def _print_table(table: RichTable) -> None:
+    """As narrow as it may be; a line that the terminal folds is better than one that is cut."""
+    wide = console()
+
+    def sizes() -> Measurement:
+        return Measurement.get(wide, wide.options.update(max_width=_WIDEST), table)
+
+    if sizes().minimum >= wide.width:
+        table.padding = 0
+    if sizes().minimum >= wide.width:
+        wide.width = sizes().maximum
+    wide.print(table)
 
 
 def _verdict(found: Verdict) -> None:

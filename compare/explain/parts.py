@@ -58,8 +58,10 @@ class Parted(Shown):
 
     @property
     def left(self) -> Part:
-        """What stays unexplained, of the reading where it is most."""
-        return max(self.parts["unexplained"].values(), key=lambda part: part.rms)
+        """What stays unexplained where it is most, of readings beyond its uncertainty if any is."""
+        parts = self.parts["unexplained"].values()
+        beyond = [one for one in parts if one.rms > np.hypot(one.uncertainty, UNRESOLVED)]
+        return max(beyond or parts, key=lambda part: part.rms)
 
     def _tiles(self) -> dict[str, object]:
         left = self.left
