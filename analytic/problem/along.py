@@ -128,7 +128,7 @@ class Along:
             at = np.append(at, (at[1:] + at[:-1]) / 2)
             values = piece(at)
             if (values <= 0).any():
-                return float(at[values <= 0].min())
+                return float(at[values <= nothing].min())
             if vanishes is None and (values <= nothing).any():
                 vanishes = float(at[np.argmin(values)])
         return vanishes

@@ -17,6 +17,7 @@ from compare.simulate.rigidity import (
     contact_stiffness,
     elastica_error,
     is_curved,
+    moving,
     radii,
     smooth_rigidity,
     tapers,
@@ -325,7 +326,7 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return
-    softest = min(treatment.moving(found) or meeting, key=lambda geom: geom.stiffness)
+    softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
     sinks = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
     if sinks > (SINKS_RUBBING if softest.friction else SINKS):
         depth = f"{sinks:.1e} L into the object"

@@ -11,6 +11,7 @@ from analytic.solver.elastica import frame, span
 from mujoco_models.inspect.measured import Geom, MeasuredBeam
 
 _POINTS = 2001  # of an integral along the beam
+_BESIDE = 0.01  # of the first joint's place
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
 _LEAST_COMPLIANCE = 0.01  # relative to a cell; what is left of a smooth course of EI
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
@@ -111,9 +112,15 @@ def clamp_stiffness(found: MeasuredBeam) -> float:
     return float(found.length / (as_intended(found) * compliance))
 
 
+def moving(found: MeasuredBeam) -> list[Geom]:
+    """What touches and moves: not what is fixed to the foot."""
+    start = found.joints[0].s
+    return [g for g in found.geoms if g.meets and g.weight and g.end > start + _BESIDE * start]
+
+
 def contact_stiffness(found: MeasuredBeam) -> float:
     """Median of what touches and moves [EI/L^3]."""
-    stiffness = [g.stiffness for g in found.geoms if g.meets and np.isfinite(g.stiffness)]
+    stiffness = [g.stiffness for g in moving(found) if np.isfinite(g.stiffness)]
     unit = as_intended(found) / found.length**3
     return float(np.median(stiffness) / unit) if stiffness else float("nan")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from compare.simulate.rigidity import as_intended, flexibility, joint_arms
+from compare.simulate.rigidity import as_intended, flexibility, joint_arms, moving
 from mujoco_models.fix.edit import Edit, Insert, number
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
 
@@ -17,7 +17,6 @@ _SAFE = 0.5  # of the longest stable step, which a contact makes shorter
 _CONTACT = 4e3  # EI/L^3; of the softest contact
 _RUBBING, _SWINGING = 900.0, 0.25  # the same with friction, and its contact's damping ratio
 _IMPEDANCE = 0.9  # with 0.99 a quarter of all stations chatter
-_BESIDE = 0.01  # of the first joint's place
 _DAMPING = 0.05  # ratio
 _EVEN = 1e-5  # L
 _RIGID_CELL = 0.75  # of a cell; where a first joint is behind it
@@ -53,12 +52,6 @@ def solved(found: MeasuredBeam, undone: float) -> tuple[Edit, ...]:
 def hardest(found: MeasuredBeam) -> str:
     """The solref of a constraint that is as hard as the time step allows."""
     return f"{number(2 * timestep(found))} 1"
-
-
-def moving(found: MeasuredBeam) -> list[Geom]:
-    """What touches and moves: not what is fixed to the foot."""
-    start = found.joints[0].s
-    return [g for g in found.geoms if g.meets and g.weight and g.end > start + _BESIDE * start]
 
 
 def hardened(found: MeasuredBeam) -> tuple[Edit, ...]:

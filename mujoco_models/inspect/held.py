@@ -30,10 +30,11 @@ class Bending:
     # Shape (n,); Rates at which dampers slow these vibrations: twice the damping ratio times the
     # angular frequency [1/time].
     damping: Floats
-    # The first of the squares without the joints' own inertia [1/time^2].
+    # Of the slowest that bends it, without the joints' own inertia [1/time^2].
     slowest_without_armature: float
     # Strain of its edges over a pull along them; 0 for what cannot stretch [1/force].
     stretch: float = 0.0
+    first: int = 0  # of the vibrations: the slowest that bends it along the sweep
 
 
 class HeldModel:

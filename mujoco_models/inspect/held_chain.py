@@ -230,7 +230,7 @@ class HeldChain(HeldModel):
         way = axes[0] @ self._moves()
         inertias = [self._inertia(armature) for armature in (True, False)]
         try:
-            (squares, modes), (bare, _) = (eigh(stiffness, inertia) for inertia in inertias)
+            (squares, modes), (bare, shapes) = (eigh(stiffness, inertia) for inertia in inertias)
         except (np.linalg.LinAlgError, ValueError) as error:  # of no inertia, or of an infinite one
             raise InputError(
                 "masses of the vibrissa", "such that it has no vibrations",
@@ -247,7 +247,8 @@ class HeldChain(HeldModel):
             tip_compliance=float(way @ flexibility @ way),
             squares=squares,
             damping=np.einsum("im,ij,jm->m", modes, self._damping(), modes),
-            slowest_without_armature=float(bare[0]),
+            slowest_without_armature=float(bare[_slowest(bare, way @ shapes)]),
+            first=_slowest(squares, way @ modes),
         )
 
     def _inertia(self, armature: bool) -> Floats:
@@ -273,3 +274,8 @@ class HeldChain(HeldModel):
         way = np.zeros((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, way, None, self.tip, self._tip_body)
         return np.asarray(way[:, self.dofs])
+
+
+def _slowest(squares: Floats, of_the_tip: Floats) -> int:
+    """Which vibration bends it: the one by which the tip gives way most; a twist is no bending."""
+    return int(np.argmax(of_the_tip**2 / squares))

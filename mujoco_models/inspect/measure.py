@@ -80,10 +80,12 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     squares, damping = bending.squares, bending.damping
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
-    period = float(2 * np.pi / np.sqrt(squares[0]))
-    if not 1 / _LONGEST < period < _LONGEST:
+    slowest = float(np.sqrt(squares[bending.first]))
+    period = 2 * np.pi / slowest
+    longest = float(2 * np.pi / np.sqrt(squares[0]))
+    if not 1 / _LONGEST < longest < _LONGEST:
         raise InputError(
-            "model", f"with a first period of {period:g}", "one with a mass that its springs move",
+            "model", f"with a first period of {longest:g}", "one with a mass that its springs move",
             "correct the masses of the vibrissa and of what holds it",
         )  # fmt: skip
     chain = parts.rod is None
@@ -119,7 +121,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         stable_step=_stable_step(model, squares, damping),
         tolerance=float(model.opt.tolerance),
         undone=_undone(model) * period**4 / (mass * length**2),
-        damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
+        damping_ratio=float(damping[bending.first] / (2 * slowest)),
         linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),

@@ -132,7 +132,7 @@ class MeasuredBeam(Shown):
         Largest distance of joints and tip from the straight line through the clamp [length].
     mass : float
     period, period_without_armature : float
-        The first of free vibration [time].
+        The first of free vibration along the sweep [time].
     stable_step : float
         The longest stable time step of an integrator that is explicit in springs [time].
     tolerance : float

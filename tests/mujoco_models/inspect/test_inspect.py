@@ -56,6 +56,17 @@ def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt, at_rest):
     assert measured(tmp_path).torsion == np.inf
 
 
+def test_a_twist_slower_than_the_bending_sets_no_period(tmp_path):
+    path = Chain().write(tmp_path)
+    bends = '<joint axis="0 0 1" stiffness="20.0"'
+    twists = '<joint axis="0 1 0" stiffness="0.2" armature="0.01"/>'
+    path.write_text(path.read_text().replace(bends, twists + bends))
+    found, bare = inspect_model(path), measured(tmp_path)
+    assert found.period == pytest.approx(bare.period, rel=1e-5)
+    assert found.period_without_armature == pytest.approx(found.period, rel=1e-9)
+    assert found.damping_ratio == pytest.approx(bare.damping_ratio, rel=1e-5)
+
+
 def test_it_is_measured_in_its_own_units(tmp_path):
     found = measured(tmp_path, Chain(length=100.0, radius=0.5, rigidity=640.0))
     assert found.length == pytest.approx(100.0)
