@@ -22,7 +22,7 @@ from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
 from compare.sense.record import Record, check_size, inspect_record
-from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
+from compare.sense.transitions import TRANSITIONS, locate_transitions, second_contacts, snap_off
 
 _SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more is no noise
 
@@ -32,7 +32,8 @@ class Measurement(SweepPair[Readings]):
     """What two sweeps differ by, before anyone judges it.
 
     The candidate's rows are in the order of the motion, its ``foot_x`` without the offset. Events
-    are ``first_contact``, ``phase_b_start``, ``phase_b_end`` and ``snap_off``.
+    are ``first_contact``, ``phase_b_start``, ``phase_b_end`` and ``snap_off``; where a sweep has a
+    second contact, and both say where they touch, ``second_contact_start`` and ``.._end`` besides.
     """
 
     alignment: Alignment  # the compared stations, and why the others are not
@@ -45,7 +46,7 @@ class Measurement(SweepPair[Readings]):
     @property
     def transitions(self) -> dict[str, Occurrence]:
         """Where one phase gives way to the next, by name."""
-        return {name: self.events[name] for name in TRANSITIONS}
+        return {name: event for name, event in self.events.items() if name != "snap_off"}
 
     @property
     def snap_off(self) -> Occurrence:
@@ -170,6 +171,12 @@ def measure(
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
     one, other = (locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items())
     events = {name: Occurrence(one[name], other[name], shift.uncertainty) for name in TRANSITIONS}
+    twice = second_contacts(reference), second_contacts(candidate)
+    if twice[0] and twice[1]:
+        for name, (place, off) in twice[0].items():
+            beside, off_by = twice[1][name]
+            second = Occurrence(place, beside, shift.uncertainty + off + off_by)
+            events |= {} if place is None is beside else {name: second}
     return Measurement(
         reference,
         candidate,

@@ -9,6 +9,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from compare.sense.phases import Classification
 
 TRANSITIONS = ("first_contact", "phase_b_start", "phase_b_end")
+SECOND = ("second_contact_start", "second_contact_end")
 _FIT = 3  # stations on either side that a parabola is laid through
 _TINY = 1e-290  # values that differ by less cannot be scaled for the fit
 _ALIKE = 1e-9  # of the span of all: two values that are nearer to each other are one
@@ -61,6 +62,29 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
         return None, 0.0
     last, free = at[touching[-1]], at[touching[-1] + 1]
     return float(last + free) / 2, float(abs(last - free)) / 2
+
+
+def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]] | None:
+    """Where along the sweep a second contact begins and ends, and how far that may be off.
+
+    The source's own values where it located them; else half-way between stations. None if the
+    readings do not say where the vibrissa touches, and for an end that is the snap-off.
+    """
+    if "contact_x" not in readings.table:
+        return None
+    found: dict[str, tuple[float | None, float]] = dict.fromkeys(SECOND, (None, 0.0))
+    if "second_contact_x" not in readings.table:
+        return found
+    at = readings.running_values
+    touching = np.flatnonzero(np.isfinite(readings.values("contact_x")))
+    second = np.isfinite(readings.values("second_contact_x"))[touching]
+    for name, change in zip(SECOND, (1, -1), strict=True):
+        changes = np.flatnonzero(np.diff(second.astype(int)) == change)
+        if changes.size:
+            one, other = at[touching[changes[0 if change > 0 else -1] + np.arange(2)]]
+            found[name] = float(one + other) / 2, float(abs(one - other)) / 2
+    recorded = readings.provenance.get("events", {})
+    return found | {name: (recorded[name], 0.0) for name in SECOND if name in recorded}
 
 
 def _in_contact(readings: Readings) -> Booleans:

@@ -138,11 +138,7 @@ class Contacts(NamedTuple):
         and three or more where that is so again; a straight vibrissa touches in one.
         """
         loaded = self.loaded
-        if layout.vibrissa.is_straight or not loaded.any():
-            return [loaded]
-        most = max(_APART, _LINKS * float(layout.lengths.max()))
-        along = np.sort(self.arc_length[loaded])
-        after = along[1:][np.diff(along) > most]
+        after = places_after(self.arc_length[loaded], layout)
         number = np.searchsorted(after, self.arc_length, side="right")
         return [loaded & (number == i) for i in range(len(after) + 1)]
 
@@ -150,6 +146,14 @@ class Contacts(NamedTuple):
     def slope(self) -> Floats:
         """Slope angles of the contour with these normals, shape (n,) [rad]."""
         return slope_angle(self.normal)
+
+
+def places_after(loaded: Floats, layout: Layout) -> Floats:
+    """Of loaded contacts' arc lengths those with which another place begins [L]."""
+    if layout.vibrissa.is_straight:
+        return np.zeros(0)
+    along = np.sort(loaded)
+    return along[1:][np.diff(along) > max(_APART, _LINKS * float(layout.lengths.max()))]
 
 
 def slope_angle(normal: Floats) -> Floats:

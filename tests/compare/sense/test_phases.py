@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from analytic import (
     CLAMP_READINGS,
+    Beam,
     Case,
     Sweep,
     circle,
@@ -15,7 +16,7 @@ from analytic import (
     reconstruct,
     solve_sweep,
 )
-from compare import classify
+from compare import classify, compare
 from compare.sense import transitions
 from compare.sense.noise import with_noise
 
@@ -53,3 +54,21 @@ def test_two_values_that_are_one_to_rounding_are_no_fault(apart):
     """No polynomial goes through them; the limit is between the two stations all the same."""
     foot_x, values = np.arange(3.0), np.array([-1.0, -1.0 + apart, 1.0])
     assert 1 <= transitions._zero(foot_x, values, np.arange(3), 1, 2) <= 2
+
+
+def test_a_second_contact_that_one_sweep_lacks_is_found():
+    """By the source's own events; of readings without these, between stations."""
+    case = Case(Beam(natural_curvature=1.2), circle(1.0, (0.0, 0.4)), Sweep(stations=30))
+    exact, other = solve_sweep(case), solve_sweep(case)
+    assert compare(exact, other).events["second_contact_start"].difference == 0
+    for name in transitions.SECOND:
+        other.provenance["events"].pop(name)
+    found = compare(exact, other)
+    second = found.events["second_contact_start"]
+    step = float(np.abs(np.diff(exact.values("foot_x"))).max())
+    assert found.agrees and second.uncertainty == pytest.approx(step / 2, rel=1e-6)
+    for name in [name for name in exact.table if name.startswith("second_contact")]:
+        del other.table[name]
+    assert any("second_contact_start" in failure for failure in compare(exact, other).failures)
+    del other.table["contact_x"]  # and who does not know says nothing of it
+    assert "second_contact_start" not in compare(exact, other).events

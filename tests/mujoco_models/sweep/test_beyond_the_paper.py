@@ -126,6 +126,11 @@ def test_a_vibrissa_curved_towards_the_object_touches_it_twice(profile, natural)
         assert both.sum() > 4 and (simulated.table["second_contact_x"].notna() == both).all()
         apart = (exact.values("second_contact_x") - simulated.values("second_contact_x"))[both]
         assert np.abs(apart).max() < 1e-3
+        # Where the two places come so near that 40 links show one, none is noted.
+        events = simulated.provenance["events"]
+        for event in ("second_contact_start", *(["second_contact_end"] * (segments == 80))):
+            there = exact.provenance["events"][event]
+            assert there is None or abs(there - events[event]) < 5e-4
 
 
 def test_a_vibrissa_that_lies_down_on_its_other_side():
