@@ -184,6 +184,7 @@ def simulate_motion(
         ``contact_losses``, how often the contact was lost since the station before, and
         ``penetration`` [length]. A station is ``"chattering"`` if the contact was lost more than
         once or for 5 % of its way, and ``"lost"`` if nothing touches there but does later.
+        ``second_contact_*`` are as of `simulate_sweep`, past several objects, too.
         ``provenance["events"]["snap_off"]`` is where the last contact was lost; in space the events
         are a list, and ``friction_*`` is MuJoCo's friction over its normal force.
 

@@ -64,7 +64,7 @@ class AnyCase(OfVibrissa):
     def require_one_object(self, who: str) -> None:
         if self.others:
             allowed = f"1: {who} can take no more"
-            remedy = "solve it in closed form (exact), or sweep past one"
+            remedy = "solve it in closed form (exact), sweep MuJoCo in motion, or sweep past one"
             raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
 
     def _require_line(self, who: str) -> Sweep:

@@ -72,7 +72,8 @@ def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]]
     """
     if "contact_x" not in readings.table:
         return None
-    found: dict[str, tuple[float | None, float]] = dict.fromkeys(SECOND, (None, 0.0))
+    recorded = readings.provenance.get("events", {})
+    found = {name: (recorded.get(name), 0.0) for name in SECOND}
     if "second_contact_x" not in readings.table:
         return found
     at = readings.running_values
@@ -80,11 +81,10 @@ def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]]
     second = np.isfinite(readings.values("second_contact_x"))[touching]
     for name, change in zip(SECOND, (1, -1), strict=True):
         changes = np.flatnonzero(np.diff(second.astype(int)) == change)
-        if changes.size:
+        if changes.size and name not in recorded:
             one, other = at[touching[changes[0 if change > 0 else -1] + np.arange(2)]]
             found[name] = float(one + other) / 2, float(abs(one - other)) / 2
-    recorded = readings.provenance.get("events", {})
-    return found | {name: (recorded[name], 0.0) for name in SECOND if name in recorded}
+    return found
 
 
 def _in_contact(readings: Readings) -> Booleans:

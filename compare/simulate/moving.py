@@ -43,6 +43,9 @@ def budget_in_motion(
     many links, and ``beam`` is the closed form of the vibrissa that was measured less that of the
     one that is stated.
     """
+    case.require_one_object("a budget in motion")
+    if motion.average:
+        case.require_sweep("a budget in motion")
     sweeps: dict[str, tuple[Any, ...]]
     if model is None:
         resting = softened(settings, motion)
@@ -98,7 +101,6 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
     """
     if average == 0:
         return simulate_sweep(case, settings)
-    case.require_sweep("a budget in motion")
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
     found = simulate_sweep(case.between(first, last, (stations - 1) * _PARTS + 1), settings)

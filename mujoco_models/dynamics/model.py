@@ -1,11 +1,12 @@
 """The beam with its mass on a foot that slides, stepped by MuJoCo."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import Layout
@@ -19,6 +20,7 @@ from mujoco_models.model.spec import assemble, set_weight
 from mujoco_models.model.surface import Surface
 from mujoco_models.model.weight import hang
 from mujoco_models.motion import Motion
+from mujoco_models.obstacles.corners import Corners
 from mujoco_models.obstacles.protocol import Obstacle
 
 _FIRST = 2 * np.pi  # rad/T1
@@ -53,25 +55,36 @@ class MovingModel(SteppedModel):
     def __init__(
         self,
         beam: Beam,
-        obstacle: Obstacle,
+        obstacles: Mapping[str, Obstacle],
         motion: Motion,
         case: Case,
         begin: float,
     ) -> None:
-        self._layout, self.obstacle, self._radius = beam.layout, obstacle, case.radius
+        self._layout, self._radius = beam.layout, case.radius
+        self._obstacles = tuple(obstacles.values())
         self._poses, self._at, self._ahead = case.poses, begin, begin
         # Of foot_x, foot_y and the angle those that change.
         self._driven = np.flatnonzero([np.ptp(x) > 0 for x in case.poses.at(case.way)])
-        compiled = _spec(beam, motion, obstacle, case, self._pose, self._driven).compile()
+        compiled = _spec(beam, motion, obstacles, case, self._pose, self._driven).compile()
         implicit = motion.solref is None and motion.integrator == "discrete"
-        super().__init__(compiled, obstacle.label, 1.0, follows_inertia=implicit)
+        label = "; ".join(obstacle.label for obstacle in self._obstacles)
+        super().__init__(compiled, label, 1.0, follows_inertia=implicit)
         links = len(beam.layout.joints)
-        self._surface = Surface.of(self.model, links, obstacle.corners, case.radius)
+        corners = Corners.of_all([obstacle.corners for obstacle in self._obstacles])
+        self._surface = Surface.of(self.model, links, corners, case.radius)
+        self._object_of = self._surface.objects(self.model, obstacles)
         self._set_contacts(motion)
         # Runge and Kutta's method looks for contacts on the way of a step, too.
-        self._leaves_out = obstacle.upright and motion.integrator != "rk4"
-        scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
-        self._lookout = Lookout(scene, obstacle, case.radius, beam.layout)
+        upright = all(obstacle.upright for obstacle in self._obstacles)
+        self._leaves_out = upright and motion.integrator != "rk4"
+        beads = self._surface.beads
+        scenes = [
+            MujocoScene(self.model, self.data, beads, o, name) for name, o in obstacles.items()
+        ]
+        self._lookouts = [
+            Lookout(scene, obstacle, case.radius, beam.layout)
+            for scene, obstacle in zip(scenes, self._obstacles, strict=True)
+        ]
         if any(beam.layout.vibrissa.weight):
             self._hang(beam)
         mujoco.mj_forward(self.model, self.data)
@@ -130,19 +143,30 @@ class MovingModel(SteppedModel):
     def _look(self) -> None:
         """Let what may touch before long, and nothing else, take part in collisions."""
         self._seen = self._positions()
-        near = self.obstacle.near(self._seen[:, :2], self._radius + _AHEAD)
-        self._lookout.watch(frozenset(near.tolist()))
+        near = self._near_any(self._seen[:, :2], self._radius + _AHEAD)
+        self._lookouts[0].watch(frozenset(near.tolist()))  # beads meet all objects, or none
         self._near = near
-        self._lookout.follow_contact(self.contacts())
+        contacts, of = self.contacts(), self._met()
+        for number, lookout in enumerate(self._lookouts):
+            lookout.follow_contact(contacts.only(of == number))
+
+    def _near_any(self, points: Floats, distance: float | Floats) -> Integers:
+        """Which of the points may be nearer to an object than a distance."""
+        near = [obstacle.near(points, distance) for obstacle in self._obstacles]
+        return near[0] if len(near) == 1 else np.unique(np.concatenate(near))
+
+    def _met(self) -> Integers:
+        """The number of the object of each contact."""
+        return np.asarray(self._object_of[self.data.contact.geom].max(axis=1, initial=-1))
 
     def _leave_out(self) -> None:
         """Let no bead collide that touches nothing: MuJoCo takes longer to find that."""
         model, data, near = self.model, self.data, self._near
         mujoco.mj_kinematics(model, data)
         geoms = self._surface.beads[near]
-        reach = self._lookout.radii[near] + _CLEAR
+        reach = self._lookouts[0].radii[near] + _CLEAR
         collides = np.zeros(len(near), dtype=int)
-        collides[self.obstacle.near(data.geom_xpos[geoms, :2], reach)] = 1
+        collides[self._near_any(data.geom_xpos[geoms, :2], reach)] = 1
         model.geom_conaffinity[geoms] = collides
 
     def _positions(self) -> Floats:
@@ -165,15 +189,37 @@ class MovingModel(SteppedModel):
             return bool(self.data.contact.dist.min() < 0)
         return bool(self.contacts().loaded.any())
 
+    @property
+    def touches_twice(self) -> bool:
+        if self.data.ncon < 2 or (len(self._obstacles) == 1 and self._layout.vibrissa.is_straight):
+            return False
+        return len(self._places(self.contacts())) > 1
+
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""
         contacts = self.contacts()
         return {
-            **contacts.as_reading(self.data.contact.pos[:, :2], contacts.loaded),
             "tip_angle": self.tip_angle,
             "status": "ok",
             "kinetic_share": self.kinetic_share(),
+            **contacts.of_places(self.data.contact.pos[:, :2], self._places(contacts), self._push),
         }
+
+    def _places(self, contacts: Contacts) -> list[Booleans]:
+        """Which contacts are in one place and which in another, from the clamp on."""
+        if len(self._obstacles) == 1:
+            return contacts.places(self._layout)
+        of, loaded = self._met(), contacts.loaded
+        places = [loaded & (of == number) for number in np.unique(of[loaded])]
+        return sorted(places, key=lambda one: contacts.arc_length[one].min()) or [loaded]
+
+    def _push(self, which: Booleans) -> float:
+        """The force of some contacts along their normals."""
+        wrench, total = np.zeros(6), 0.0
+        for i in np.flatnonzero(which).tolist():
+            mujoco.mj_contactForce(self.model, self.data, i, wrench)
+            total += wrench[0]
+        return total
 
     def kinetic_share(self) -> float:
         """Kinetic energy, seen from the clamp, over kinetic and elastic energy."""
@@ -187,13 +233,13 @@ class MovingModel(SteppedModel):
 def _spec(
     beam: Beam,
     motion: Motion,
-    obstacle: Obstacle,
+    obstacles: Mapping[str, Obstacle],
     case: Case,
     start: Pose,
     driven: Integers,
 ) -> mujoco.MjSpec:
     """The model at rest, with masses, dampers, and a foot that slides and turns."""
-    spec = assemble(beam, case.radius, obstacle)
+    spec = assemble(beam, case.radius, obstacles)
     angle = float(start.angle)
     sin, cos = np.sin(angle), np.cos(angle)
     foot = spec.body(FOOT)

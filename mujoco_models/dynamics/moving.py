@@ -49,6 +49,11 @@ class SteppedModel(ABC):
     def touches(self) -> bool:
         """Whether a contact is loaded."""
 
+    @property
+    def touches_twice(self) -> bool:
+        """Whether contacts are loaded in two places that are apart."""
+        return False
+
     @abstractmethod
     def clamp(self) -> tuple[float, ...]:
         """The clamp's action on the vibrissa."""

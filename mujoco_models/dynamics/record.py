@@ -21,6 +21,45 @@ class Step:
     p: float  # parameter of the clamp's way, that of a sweep the foot position [L]
     clamp: Floats  # force and moment, as the sensor gives them [EI/L^2, EI/L]
     touches: bool  # whether a contact is loaded
+    twice: bool = False  # or two, in places that are apart
+
+
+class Touches:
+    """Where contact is found and where it is lost for good, whatever bounces between.
+
+    What is found again within half a period is one contact with its bounces. Where that lasted half
+    a period, a shorter one after it is but the vibrissa that swings back.
+    """
+
+    def __init__(self) -> None:
+        self.first: float | None = None
+        self.lost = -math.inf  # when it was, at last
+        self._lasting: float | None = None
+        self._brief: float | None = None
+        self._begun, self._now, self._touches = 0.0, 0.0, False
+
+    def follow(self, time: float, p: float, touches: bool) -> None:
+        changed, self._now, self._touches = touches != self._touches, time, touches
+        if not changed:
+            return
+        if touches:
+            if self.first is None:
+                self.first = p
+            if time - self.lost > _HALF_PERIOD:
+                self._begun = time
+            return
+        self.lost = time
+        if time - self._begun >= _HALF_PERIOD:
+            self._lasting = p
+        else:
+            self._brief = p
+
+    @property
+    def last(self) -> float | None:
+        """Where contact was lost for good; None if there is one, or was none."""
+        if self._touches and (self._lasting is None or self._now - self._begun >= _HALF_PERIOD):
+            return None
+        return self._brief if self._lasting is None else self._lasting
 
 
 class StationMeans:
@@ -37,11 +76,7 @@ class StationMeans:
         self._stations: list[float] = stations.tolist()
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
-        self.first_touch: float | None = None
-        self._lasting: float | None = None
-        self._brief: float | None = None
-        self._last = Step(0.0, math.inf, np.zeros(len(names)), touches=False)
-        self._begun, self._lost = 0.0, -math.inf
+        self.contact, self._second = Touches(), Touches()
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(len(names))
         self._losses = 0
@@ -57,6 +92,16 @@ class StationMeans:
     @property
     def complete(self) -> bool:
         return len(self.rows) == len(self._stations)
+
+    def second_contact(self) -> dict[str, float | None]:
+        """Where a second contact begins and ends, if there is one; a snap-off ends both."""
+        if self._second.first is None:
+            return {}
+        both = (
+            self.contact.last is not None and self.contact.lost - self._second.lost < _HALF_PERIOD
+        )
+        end = None if both else self._second.last
+        return {"second_contact_start": self._second.first, "second_contact_end": end}
 
     def crosses(self, before: Step, after: Step) -> bool:
         """Whether the next station lies between two steps."""
@@ -81,8 +126,9 @@ class StationMeans:
         """Add the way between two steps to the mean of the present station."""
         if before.touches != after.touches:
             self._losses += before.touches
-        apart = self.first_touch is not None and not (before.touches and after.touches)
-        self._follow(after)
+        apart = self.contact.first is not None and not (before.touches and after.touches)
+        self.contact.follow(after.time, after.p, after.touches)
+        self._second.follow(after.time, after.p, after.twice)
         if self.complete:
             return False
         station = self._stations[len(self.rows)]
@@ -96,36 +142,6 @@ class StationMeans:
             return False
         self._close()
         return True
-
-    @property
-    def last_touch(self) -> float | None:
-        """Where contact was lost for good; None if there is one, or was none.
-
-        What is found again within half a period is one contact with its bounces. Where that lasted
-        half a period, a shorter one after it is but the vibrissa that swings back.
-        """
-        so_far = self._last.time - self._begun
-        if self._last.touches and (self._lasting is None or so_far >= _HALF_PERIOD):
-            return None
-        return self._brief if self._lasting is None else self._lasting
-
-    def _follow(self, sample: Step) -> None:
-        """Note where contact is found and lost."""
-        changed = sample.touches != self._last.touches
-        self._last = sample
-        if not changed:
-            return
-        if sample.touches:
-            if self.first_touch is None:
-                self.first_touch = sample.p
-            if sample.time - self._lost > _HALF_PERIOD:
-                self._begun = sample.time
-            return
-        self._lost = sample.time
-        if sample.time - self._begun >= _HALF_PERIOD:
-            self._lasting = sample.p
-        else:
-            self._brief = sample.p
 
     def _close(self) -> None:
         row = self._pending or {}

@@ -82,8 +82,8 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
             "a chain or rod in the plane, for a sweep in motion",
             "choose one, or sweep at rest",
         )
-    beam, obstacle = parts(case, settings)
-    return MovingModel(beam, obstacle, motion, case, start)
+    beam, obstacles = parts(case, settings)
+    return MovingModel(beam, obstacles, motion, case, start)
 
 
 class Drive:
@@ -132,7 +132,8 @@ class Drive:
             model.step(speed)
             change = np.array(model.clamp()) - self._filtered
             self._filtered = self._filtered + self._follows * change
-            after = Step(model.time, facing * model.p, self._filtered, model.touches)
+            place = facing * model.p
+            after = Step(model.time, place, self._filtered, model.touches, model.touches_twice)
             while True:
                 if record.crosses(before, after):
                     record.note(before, after, model.state(speed))
@@ -182,14 +183,15 @@ class Passes(Drive):
             record.rows,
         )
         readings = self.recorded(recorder, record, advance, keep, back)
-        self._let_go = record.last_touch is not None
+        self._let_go = record.contact.last is not None
         return readings
 
     def _events(self, record: StationMeans, turn_at: float | None) -> dict[str, float | None]:
         """Parameters of the way at what has happened so far, by name; `turn_at` on the way back."""
-        last = record.last_touch
+        last = record.contact.last
         if turn_at is None:
-            return {"first_contact": record.first_touch, "snap_off": last}
+            first = record.contact.first
+            return {"first_contact": first, "snap_off": last, **record.second_contact()}
         left = None if last is None else -last
         # Held when the foot turned, it is released where it first touched; else it has passed
         # the object, comes to its other side and lets go there.

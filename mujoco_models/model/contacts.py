@@ -1,6 +1,7 @@
 """The contacts that MuJoCo reports."""
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import mujoco
@@ -84,7 +85,7 @@ class Contacts(NamedTuple):
         behind &= (self.normal * surface.corners.outward[sides.edge]).sum(axis=1) < 0
         for i in behind.nonzero()[0]:
             axis = sides.point[i] + (self.distance[i] + surface.radius) * self.normal[i]
-            behind[i] = not surface.corners.in_front(np.append(axis, 0.0))
+            behind[i] = not surface.corners.in_front(np.append(axis, 0.0), int(sides.edge[i]))
         number = len(surface.beads) + sides.edge * len(layout.joints) + sides.link
         distance = np.where(behind, -self.distance - 2 * surface.radius, self.distance)
         return Contacts(
@@ -103,7 +104,10 @@ class Contacts(NamedTuple):
         """Those with the smallest distances, in the same order."""
         if len(self.distance) <= count:
             return self
-        kept = np.sort(np.argpartition(self.distance, count)[:count])
+        return self.only(np.sort(np.argpartition(self.distance, count)[:count]))
+
+    def only(self, kept: Integers | Booleans) -> "Contacts":
+        """Some of them."""
         columns = {
             name: column[kept] for name, column in self._asdict().items() if name != "passed"
         }
@@ -130,6 +134,20 @@ class Contacts(NamedTuple):
             "contact_y": y,
             "penetration": float(-weight @ depth),
         }
+
+    def of_places(
+        self, where: Floats, places: list[Booleans], force_of: Callable[[Booleans], float]
+    ) -> dict[str, Any]:
+        """Phase and contact of the place next to the clamp, and the contact of another one."""
+        first, *others = places
+        row = self.as_reading(where, first)
+        if len(others) == 1:
+            second = self.as_reading(where, others[0])
+            row |= {f"second_{name}": second[name] for name in NOWHERE}
+            row["second_contact_force"] = force_of(others[0])
+        elif others:
+            row.update(NOWHERE, status="touches again")
+        return row
 
     def places(self, layout: Layout) -> list[Booleans]:
         """Which of them are in one place of the vibrissa and which in another, from the clamp on.

@@ -58,11 +58,16 @@ class MujocoScene:
     """That of a compiled model of MuJoCo's, whose collision masks are changed in place."""
 
     def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, beads: Integers, obstacle: Obstacle
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        beads: Integers,
+        obstacle: Obstacle,
+        name: str = GEOM,
     ) -> None:
         self._model, self._data, self._beads, self._obstacle = model, data, beads, obstacle
         self.radii = model.geom_size[beads, 0].copy()
-        self._geom = model.geom(GEOM).id
+        self._geom = model.geom(name).id
         self._chosen = np.arange(len(beads))
 
     def bead_positions(self, beads: Integers) -> Floats:

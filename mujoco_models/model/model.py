@@ -23,7 +23,7 @@ from mujoco_models.model.stiffness import stiffen
 from mujoco_models.model.surface import Surface
 from mujoco_models.model.warned import has_diverged
 from mujoco_models.model.weight import hang, holding
-from mujoco_models.obstacles.protocol import Obstacle
+from mujoco_models.obstacles.protocol import GEOM, Obstacle
 
 STEP = 1e-3  # of MuJoCo's own motion
 LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
@@ -46,7 +46,7 @@ class BeamModel:
         self.contact_stiffness = contact_stiffness
         self.pose = Pose(*np.zeros(3))
         self.evaluations = 0
-        self.model = compiled(assemble(beam, radius, obstacle))
+        self.model = compiled(assemble(beam, radius, {GEOM: obstacle}))
         self.data = mujoco.MjData(self.model)
         model = self.model
         self._foot = model.body(FOOT).id

@@ -1,5 +1,7 @@
 """The model before it is compiled: the beam with its beads, the clamp's sensors, the obstacle."""
 
+from collections.abc import Mapping
+
 import mujoco
 import numpy as np
 
@@ -8,7 +10,7 @@ from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import mass_by_length
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
-from mujoco_models.obstacles.corners import LINKS
+from mujoco_models.obstacles.corners import LINKS, Corners
 from mujoco_models.obstacles.protocol import Obstacle
 
 CCD_TOLERANCE = 1e-12  # L, of MuJoCo's searches for the nearest points
@@ -17,8 +19,8 @@ CCD_TOLERANCE = 1e-12  # L, of MuJoCo's searches for the nearest points
 _MEMORY = 2**28
 
 
-def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
-    """Beam, beads, sensors and obstacle.
+def assemble(beam: Beam, radius: float, obstacles: Mapping[str, Obstacle]) -> mujoco.MjSpec:
+    """Beam, beads, sensors and obstacles, by the names of their geoms.
 
     The beam touches facets with spheres on its axis, not with capsules: the distance of a point to
     a convex body has a continuous derivative, so an equilibrium exists at every station; a capsule
@@ -41,9 +43,11 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     add_options(spec)
     if any(layout.vibrissa.weight):
         set_weight(spec, layout, mass_by_length(layout))
-    obstacle.add_to(spec)
-    if len(obstacle.corners):
-        obstacle.corners.add_to(spec)
+    for name, obstacle in obstacles.items():
+        obstacle.add_to(spec, name)
+    corners = Corners.of_all([obstacle.corners for obstacle in obstacles.values()])
+    if len(corners):
+        corners.add_to(spec)
         _let_links_collide(beam, spec)
     add_clamp_sensors(spec)
     return spec

@@ -1,5 +1,6 @@
 """What of the beam may touch, and what of the obstacle its sides touch."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -39,6 +40,14 @@ class Surface:
         side_of[sides] = np.arange(len(sides))
         edge_of[edges] = np.arange(len(edges))
         return cls(beads, np.array(sides, dtype=int), bead_of, side_of, edge_of, corners, radius)
+
+    def objects(self, model: mujoco.MjModel, names: Iterable[str]) -> Integers:
+        """The number of the object that each geom is, or is an edge of, or -1; shape (ngeom,)."""
+        found = np.where(self.edge_of >= 0, 0, -1)
+        found[self.edge_of >= 0] = self.corners.of_object[self.edge_of[self.edge_of >= 0]]
+        for number, name in enumerate(names):
+            found[model.geom(name).id] = number
+        return found
 
     @cached_property
     def moves(self) -> Booleans:

@@ -6,6 +6,7 @@ link and turns with it. So past corners the beam has a bead at each joint, for f
 collide with the edges: together that is all that two polygons can touch each other with.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -28,11 +29,12 @@ class Corners:
     outward: Floats  # shape (m, 2); Unit vectors half-way between the normals of the two facets
     # Of the capsules that MuJoCo takes for edges, which reach as far outward as those [L].
     radius: float
+    of_object: Integers  # shape (m,); the number of the object that each is of
 
     @classmethod
     def none(cls) -> "Corners":
         """Those of a smooth obstacle."""
-        return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)), 0.0)
+        return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)), 0.0, np.zeros(0, dtype=int))
 
     @classmethod
     def of(
@@ -48,7 +50,16 @@ class Corners:
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
         outward = np.column_stack([np.sin(bisector), -np.cos(bisector)])
-        return cls(edges[sharp], outward, radius)
+        return cls(edges[sharp], outward, radius, np.zeros(len(outward), dtype=int))
+
+    @classmethod
+    def of_all(cls, parts: Sequence["Corners"]) -> "Corners":
+        """Those of several objects, in turn."""
+        number = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+        ends, outward = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("ends", "outward")
+        )
+        return cls(ends, outward, max(part.radius for part in parts), number)
 
     def __len__(self) -> int:
         return len(self.ends)
@@ -59,10 +70,11 @@ class Corners:
         share = ((points - begin) * run).sum(axis=1) / (run**2).sum(axis=1)
         return np.asarray(begin + np.clip(share, 0, 1)[:, None] * run)
 
-    def in_front(self, point: Floats) -> bool:
-        """Whether a place is in front of one of them, so that it is outside."""
-        away = point - self.nearest(np.arange(len(self)), point)
-        return bool(((away[:, :2] * self.outward).sum(axis=1) > 0).any())
+    def in_front(self, point: Floats, edge: int) -> bool:
+        """Whether a place is in front of one of the object with an edge, so that it is outside."""
+        own = np.flatnonzero(self.of_object == self.of_object[edge])
+        away = point - self.nearest(own, point)
+        return bool(((away[:, :2] * self.outward[own]).sum(axis=1) > 0).any())
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         inset = np.insert(self.radius * self.outward, 2, 0.0, axis=1)

@@ -211,7 +211,9 @@ def own_ends(case: Case) -> tuple[bool, bool]:
     return left, right
 
 
-def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) -> None:
+def add_hull(
+    spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float, name: str = GEOM
+) -> None:
     """Add the hull of points to the world body.
 
     MuJoCo stores vertices in single precision relative to the centroid of the *faces*, while
@@ -222,6 +224,6 @@ def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) 
     """
     speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)
-    mesh = spec.add_mesh(name=GEOM)
+    mesh = spec.add_mesh(name=name)
     mesh.uservert, mesh.userface = np.concatenate([vertices, speck]).ravel(), faces.ravel()
-    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name)
+    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, name, meshname=name)

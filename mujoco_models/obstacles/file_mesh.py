@@ -16,6 +16,7 @@ from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.faceted import Faceted, add_hull, own_ends, touchable
+from mujoco_models.obstacles.protocol import GEOM
 
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
 _SAME_PLACE = 1e-7  # L
@@ -66,12 +67,12 @@ class FileMesh(Faceted):
     def hull(self, window: int) -> Floats:
         return self._solid.vertices
 
-    def add_to(self, spec: mujoco.MjSpec) -> None:
+    def add_to(self, spec: mujoco.MjSpec, name: str = GEOM) -> None:
         vertices = self._solid.vertices
         inner = vertices.mean(axis=0)
         planes = ConvexHull(vertices).equations
         depth = -float((planes[:, :3] @ inner + planes[:, 3]).max())
-        add_hull(spec, vertices, inner, _SPECK * depth / 3)
+        add_hull(spec, vertices, inner, _SPECK * depth / 3, name)
 
     @cached_property
     def corners(self) -> Corners:

@@ -16,7 +16,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.prism import Prism
-from mujoco_models.obstacles.protocol import Obstacle, add_collider
+from mujoco_models.obstacles.protocol import GEOM, Obstacle, add_collider
 
 # rad, between neighbouring circles. A contact is off its circle's point of osculation by no more,
 # and the contour from the circle by the cube of that; where curvature jumps, by the square.
@@ -74,10 +74,10 @@ class Primitive(Obstacle):
     def lowest(self) -> tuple[float, float]:
         return self._outline.lowest
 
-    def add_to(self, spec: mujoco.MjSpec) -> None:
+    def add_to(self, spec: mujoco.MjSpec, name: str = GEOM) -> None:
         """One geom; not at the origin, or MuJoCo takes it that it never leaves it."""
         cylinder = mujoco.mjtGeom.mjGEOM_CYLINDER
-        add_collider(spec, cylinder, pos=[1, 1, 0], size=[1, _HALF_LENGTH, 0])
+        add_collider(spec, cylinder, name, pos=[1, 1, 0], size=[1, _HALF_LENGTH, 0])
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         radius = self._circles.radius[window]

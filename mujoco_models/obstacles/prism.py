@@ -18,6 +18,7 @@ from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.corners import SHARP, Corners, ends_sharp, upright
 from mujoco_models.obstacles.faceted import Faceted, own_ends, touchable
+from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.obstacles.window import HALF_DEPTH, add_room, write_prism
 from mujoco_models.settings import Settings
 
@@ -210,9 +211,9 @@ class Prism(Faceted):
         begin, roof = kept.searchsorted(centre), [len(self.vertices)]
         return np.asarray(self._closed[np.concatenate([kept[begin:], roof, kept[:begin]])])
 
-    def add_to(self, spec: mujoco.MjSpec) -> None:
+    def add_to(self, spec: mujoco.MjSpec, name: str = GEOM) -> None:
         """One mesh with room for any window; what it is, `show` says."""
-        add_room(spec, 2 * self._count)
+        add_room(spec, 2 * self._count, name)
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         polygon = self._polygon(int(self._centres[window]))

@@ -8,15 +8,15 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.obstacles.corners import Corners
 
-GEOM = "obstacle0"  # hardly a name in a user's own model
+GEOM = "obstacle0"  # hardly a name in a user's own model; other objects have other numbers
 TOP = 0.75 * np.pi  # rad; the lower side ends at pi/2, but a bead may touch a little above that
 
 
 class Obstacle(ABC):
     """The object in MuJoCo, convex, swept past from below; dimensionless, L = 1.
 
-    It is one geom, named `GEOM`. What MuJoCo sees of it is best near one place of the contour, its
-    window, which follows the contact.
+    It is one geom, `GEOM` if there is one object. What MuJoCo sees of it is best near one place of
+    the contour, its window, which follows the contact.
     """
 
     faceted: bool
@@ -47,7 +47,7 @@ class Obstacle(ABC):
         """A lowest point of the contour [L]."""
 
     @abstractmethod
-    def add_to(self, spec: mujoco.MjSpec) -> None:
+    def add_to(self, spec: mujoco.MjSpec, name: str = GEOM) -> None:
         """Add the geom to the world body."""
 
     @abstractmethod

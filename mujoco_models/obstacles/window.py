@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.obstacles.protocol import GEOM, add_collider
+from mujoco_models.obstacles.protocol import add_collider
 
 # L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
 # ends, and much more than a penetration, or depths come out wrong.
@@ -24,7 +24,7 @@ _FEW = 8
 _GOLDEN = np.pi * (3 - np.sqrt(5))
 
 
-def add_room(spec: mujoco.MjSpec, count: int) -> None:
+def add_room(spec: mujoco.MjSpec, count: int, name: str) -> None:
     """Add a geom with a mesh of `count` vertices to the world body."""
     number = np.arange(max(count, _LEAST))
     height = 1 - (2 * number + 1) / len(number)
@@ -32,10 +32,10 @@ def add_room(spec: mujoco.MjSpec, count: int) -> None:
     vertices = np.column_stack(
         [across * np.cos(_GOLDEN * number), across * np.sin(_GOLDEN * number), height]
     )
-    mesh = spec.add_mesh(name=GEOM)
+    mesh = spec.add_mesh(name=name)
     mesh.uservert = vertices.ravel()  # without faces, it has those of its hull
     # Not at the origin, or MuJoCo takes it that it never leaves it.
-    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, pos=[1, 1, 0])
+    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, name, meshname=name, pos=[1, 1, 0])
 
 
 def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Floats) -> None:

@@ -170,7 +170,7 @@ def run_space_motion(
     source = f"mujoco {settings.beam} in motion"
 
     def events() -> list[WalkEvent]:
-        both = ("touch", record.first_touch), ("slip-off", record.last_touch)
+        both = ("touch", record.contact.first), ("slip-off", record.contact.last)
         return [WalkEvent(kind, -at) for kind, at in both if at is not None]
 
     recorder = SpatialRecorder(case, source, about, events, places, record.rows)

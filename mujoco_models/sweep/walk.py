@@ -5,14 +5,14 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contact_side import Side
-from mujoco_models.model.contacts import NOWHERE, places_after
+from mujoco_models.model.contacts import places_after
 from mujoco_models.sweep.bracket import Bracket
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
@@ -379,23 +379,21 @@ class Walk(Generic[Model]):
         """The readings of the state that the beam is in."""
         model, state = self.model, self._shown
         clamp, contacts = model.clamp(), model.contacts()
-        first, *others = contacts.places(model.layout)
-        where = model.contact_places()
+        places = contacts.places(model.layout)
         row: dict[str, Any] = {
             **clamp._asdict(),
-            **contacts.as_reading(where, first),
             "tip_angle": float(model.layout.tip_angle(state.angles) + model.pose.angle),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
-        if self.doubt is None and len(others) == 1:
-            second = contacts.as_reading(where, others[0])
-            row |= {f"second_{name}": second[name] for name in NOWHERE}
-            row["second_contact_force"] = sum(state.forces[i] for i in contacts.touch[others[0]])
-        elif self.doubt is None and others:
-            row.update(NOWHERE, status="touches again")
+        known = places if self.doubt is None else places[:1]
+
+        def force_of(which: Booleans) -> float:
+            return sum(state.forces[i] for i in contacts.touch[which])
+
+        row |= contacts.of_places(model.contact_places(), known, force_of)
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(model.pose, row["discrepancy"], _DISCREPANCY)

@@ -17,7 +17,7 @@ FAR = Case(profile=circle(1.0, (0.0, 0.9)), sweep=Sweep(3, 5.0, 4.0), name="far"
 def moving(motion, settings=None, case=FAR, foot_x=5.0):
     settings = settings or Settings(segments=20, contour_points=100)
     beam = build(settings, 0.05)
-    return MovingModel(beam, place(case, settings), motion, case, foot_x)
+    return MovingModel(beam, {"obstacle0": place(case, settings)}, motion, case, foot_x)
 
 
 def first_period(segments):

@@ -5,7 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Sweep,
+    circle,
+    named_case,
+    polygon,
+    solve_sweep,
+)
 from compare import compare
 from mujoco_models import DivergedError, Motion, Settings, simulate_motion
 from mujoco_models.dynamics.model import MovingModel
@@ -13,6 +23,8 @@ from mujoco_models.dynamics.model import MovingModel
 CASE = replace(named_case("catenary"), sweep=Sweep(60))
 # Smooth and coarse: many steps in little time.
 SMOOTH = Settings(segments=10, contact_stiffness=1e4, obstacle="primitive")
+
+SMOOTH_MESH = replace(SMOOTH, obstacle="mesh", contour_points=400)
 
 
 def worst(reference, candidate):
@@ -39,6 +51,26 @@ def test_beads_that_are_left_out_of_a_step_touch_nothing_in_it(monkeypatch):
     every = simulate_motion(case, Motion(speed=0.6, timestep=0.02), settings)
     for name in (*CLAMP_READINGS, "penetration"):
         np.testing.assert_array_equal(swept.values(name), every.values(name))
+
+
+@pytest.mark.parametrize("first", [circle(0.1, (0.0, 0.7)), None])
+def test_two_objects_are_touched_at_once(first):
+    """The contact passes from one to the other, and in between there are two."""
+    box = polygon([(-0.35, 0.35), (-0.2, 0.35), (-0.15, 0.5), (-0.3, 0.55)])
+    other = circle(0.3, (-0.25, 0.35)) if first else box
+    way = Sweep(30, 0.11, -0.12) if first else Sweep(30, 0.11, -0.4)
+    case = Case(Beam(radius=0.002), [circle(0.1, (0.0, 0.7)), other], way)
+    exact, moved = solve_sweep(case), simulate_motion(case, Motion(speed=0.02), SMOOTH_MESH)
+    for event in ("second_contact_start", "second_contact_end"):
+        there, here = (s.provenance["events"][event] for s in (exact, moved))
+        assert here == pytest.approx(there, abs=2e-3)
+    both = exact.table["second_contact_x"].notna() & moved.table["second_contact_x"].notna()
+    assert both.sum() >= 2
+    for name, off in (("contact_x", 5e-3), ("second_contact_x", 5e-3)):
+        assert np.abs(exact.values(name) - moved.values(name))[both].max() < off
+    largest = np.nanmax(exact.values("second_contact_force"))
+    off = exact.values("second_contact_force") - moved.values("second_contact_force")
+    assert np.abs(off[both]).max() < 0.1 * largest
 
 
 def test_a_sweep_in_motion_has_a_row_a_station():

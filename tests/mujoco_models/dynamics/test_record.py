@@ -76,4 +76,4 @@ def test_the_last_contact_that_is_lost_is_the_snap_off():
     x = np.linspace(0.6, -0.1, 71)
     touches = (x > 0.3) & ~((x < 0.42) & (x > 0.4))
     driven(record, x, np.zeros((71, 3)), touches)
-    assert record.last_touch == pytest.approx(0.3, abs=0.011)
+    assert record.contact.last == pytest.approx(0.3, abs=0.011)
