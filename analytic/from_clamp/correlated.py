@@ -7,7 +7,7 @@ each channel with its own. How likely each of a grid of these is, is restricted 
 widens its interval. Hum is a sine and a cosine of the period at which the residuals have a line.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,33 +108,32 @@ def estimate(
     gram, root = _gram(columns, rows)
     prior = np.zeros(len(sizes) + 1)
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
-    normal = gram + np.diag(prior)
     # The noise is what each pass's own numbers leave: passes that differ are no noise.
-    left, logarithm = _without_nuisances(normal, 0)
+    left, logarithm = _without_nuisances(gram, prior, 0)
     freedom = len(columns) - len(rows) * int(np.sum(prior[:-1] == 0))
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
     likely = softmax(weights, axis=0)
     draws = _DRAWS if known else _FEW  # where only the noise is sought
-    systems = np.diag(prior) + np.zeros((len(rows), draws, 1, 1))
     draw = np.random.default_rng(seed)
+    drawn = []
     for channel in range(readings.shape[1]):
         at = draw.choice(len(_GRID), size=draws, p=likely[:, channel])
         variance = square[at, channel] / draw.chisquare(freedom, size=draws)
-        systems += gram[:, at, channel] / variance[:, None, None]
-    one_by_one = _without_nuisances(systems, known)[0]
-    white = np.diag(prior) + gram[:, :1].sum(axis=2) / (least or _NOISELESS) ** 2
-    narrowest = _without_nuisances(white, known)[0][:, 0]
+        drawn.append((at, channel, variance[:, None, None]))
+    systems = (sum(one[at, channel] / size for at, channel, size in drawn) for one in gram)
+    one_by_one = _without_nuisances(systems, prior, known)[0]
+    white = gram[:, :1].sum(axis=2)
+    narrowest = _without_nuisances(white / (least or _NOISELESS) ** 2, prior, known)[0][:, 0]
     together = _posterior(one_by_one.sum(axis=0), narrowest.sum(axis=0))
     by_pass = [_alone(*one, together[0], shared) for one in zip(one_by_one, narrowest, strict=True)]
-    common, logarithm = _without_nuisances(normal, known)
+    common, logarithm = _without_nuisances(gram, prior, known)
     unexplained = np.append(-together[0], 1.0)
     left = unexplained @ common.sum(axis=0) @ unexplained
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(columns))
     size = sizes[:known]
-    alone = np.diag(prior) + gram[:, :1].sum(axis=2)
-    unfitted = float(alone[..., -1, -1].sum() - _without_nuisances(alone, 0)[0].sum())
+    unfitted = float(white[..., -1, -1].sum() - _without_nuisances(white, prior, 0)[0].sum())
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         return start + found[0] / size, found[1] / np.outer(size, size)
@@ -196,18 +195,22 @@ def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
     return found, logarithm
 
 
-def _without_nuisances(gram: Floats, known: int) -> tuple[Floats, Floats]:
+def _without_nuisances(grams: Iterable[Floats], prior: Floats, known: int) -> tuple[Floats, Floats]:
     """Normal equations (passes, some, ..., m, m) without the columns from `known` to the last.
 
-    And the logarithm of the determinant of what is left out.
+    And the logarithm of the determinant of what is left out. All passes at once would take 100 MB.
     """
-    kept = np.array([*range(known), gram.shape[-1] - 1])
-    inner, beside = gram[..., known:-1, known:-1], gram[..., known:-1, :][..., kept]
-    largest = np.einsum("...ii->...i", inner).max(axis=-1, initial=0.0)
-    inner = inner + _RANK * largest[..., None, None] * np.eye(inner.shape[-1])
-    left = gram[..., kept, :][..., kept]
-    left = left - beside.swapaxes(-1, -2) @ np.linalg.solve(inner, beside)
-    return left, np.linalg.slogdet(inner).logabsdet
+    kept = np.array([*range(known), len(prior) - 1])
+    found, logarithms = [], []
+    for gram in grams:
+        normal = gram + np.diag(prior)
+        inner, beside = normal[..., known:-1, known:-1], normal[..., known:-1, kept]
+        largest = np.einsum("...ii->...i", inner).max(axis=-1, initial=0.0)
+        inner = inner + _RANK * largest[..., None, None] * np.eye(inner.shape[-1])
+        left = beside.swapaxes(-1, -2) @ np.linalg.solve(inner, beside)
+        found.append(normal[..., kept[:, None], kept] - left)
+        logarithms.append(np.linalg.slogdet(inner).logabsdet)
+    return np.stack(found), np.stack(logarithms)
 
 
 def _posterior(systems: Floats, white: Floats) -> tuple[Floats, Floats]:

@@ -64,7 +64,7 @@ def calibrate(
     from analytic import relative_noise
     from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
-    from compare.commands.comparing import RigFiles
+    from compare.commands.rig_files import RigFiles
     from compare.commands.sweep_lines import note_rows
     from compare.read.case import case_tables, load_job
     from compare.sense.record import without_dropouts

@@ -1,11 +1,11 @@
 """What ``compare`` does with its files: one candidate is judged, several are set side by side."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from analytic import Beam, Direction, InputError, Readings, Sweep
+from analytic import Beam, InputError, Readings, Sweep
 from analytic.problem.readings_file import is_ours
 from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_complaint
 from compare.align.frames import Frame
@@ -13,6 +13,7 @@ from compare.commands import terminal
 from compare.commands.options import AGREES, DISAGREES
 from compare.commands.output import distinct_names, page_folder
 from compare.commands.pipeline import AnyComparison, reported
+from compare.commands.rig_files import RigFiles as RigFiles
 from compare.commands.sweep_lines import note_rows
 from compare.commands.sweeping import AnyReadings
 from compare.comparison import Comparison, compare
@@ -23,40 +24,12 @@ from compare.read.assumed import vibrissa_of
 from compare.read.case import load_job
 from compare.read.job import AnyJob, Job
 from compare.read.limits import read_tolerances
-from compare.read.rig import read_measured
 from compare.read.run_folder import read_stored
 from compare.read.space_readings import read_space
 from compare.show.passes import repeats_summary
 from compare.show.side_by_side import SideBySide, summary, write_side_by_side
 
 Number: TypeAlias = float | Literal["auto"]
-
-
-@dataclass(frozen=True)
-class RigFiles:
-    """How files that no engine wrote are to be read."""
-
-    columns: Sequence[str]
-    beam: Path | None
-    direction: Direction | None
-    frame: Frame
-
-    def read(self, file: Path, otherwise: Beam | None = None) -> Readings:
-        """A sweep in the plane, of that vibrissa if nothing else says."""
-        return read_measured(file, self.beam, self.columns, otherwise, self.direction)
-
-    def read_all(self, files: Sequence[Path], otherwise: Beam | None = None) -> list[Readings]:
-        """The sweeps of some files, of passes those in the direction that is asked for."""
-        found = [self.read(file, otherwise) for file in files]
-        kept = [
-            one
-            for one in found
-            if self.direction in (None, one.provenance.get("direction", self.direction))
-        ]
-        if not kept:
-            went = "they all go the other way: choose it, or leave --direction out"
-            raise InputError("--direction", self.direction, "that of a pass", went)
-        return kept
 
 
 def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:

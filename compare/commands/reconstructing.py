@@ -25,9 +25,9 @@ from analytic.space import SpatialReadings, convex_band, fit_body
 from analytic.space.from_clamp.fit_body import BODY_FAMILIES
 from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
-from compare.commands.comparing import RigFiles as RigFiles
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
+from compare.commands.rig_files import RigFiles as RigFiles
 from compare.commands.sweep_lines import note_rows, print_reconstruction
 from compare.commands.sweeping import deviations, find_body
 from compare.read.job import SpaceJob

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic import Beam, Case, InputError, circle, solve_sweep
+from compare.judge.rate import Rate
 from compare.simulate.expected import SPEED, expected
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
@@ -31,6 +32,7 @@ _ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes wi
 _UNTIL = ", until it would leave its plane"
 _CIRCLE, _LOWEST = 0.8, 0.4  # L; radius of the circle, and how high it is
 _STATIONS = 21  # of a varying EI
+_WAY = 1.5  # L; of the foot while the side of the vibrissa touches that circle
 
 
 @dataclass(frozen=True)
@@ -39,12 +41,15 @@ class Fixed:
 
     files: tuple[Path, ...]
     edits: tuple[Edit | Insert, ...]
+    followed: tuple[Edit | Insert, ...]  # those of them that the model asks for with the others set
     inspection: Inspection  # of the fixed model
 
     def lines(self) -> Iterator[str]:
         """What was done, and what to expect."""
         names = " and ".join(str(file) for file in self.files)
         yield f"wrote {names}: {len(self.edits)} edits"
+        for edit in filter(str, self.followed):
+            yield f"  then set {edit}"
         for fault in self.inspection.faults:
             yield f"  left, {fault.subject}: {fault.text}"
         if self.inspection.sound:
@@ -55,18 +60,15 @@ class Fixed:
 
 def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Fixed:
     """Write a copy without the faults that a number fixes."""
-    model, done = load(path), list[Edit | Insert]()
+    model, done, asked = load(path), list[Edit | Insert](), 0
     files: tuple[Path, ...] = ()
     for _ in range(_ROUNDS):
-        new = [
-            edit
-            for fault in inspection.faults
-            for edit in fault.edits
-            if not (isinstance(edit, Insert) and edit in done)
-        ]
+        wanted = dict.fromkeys(edit for fault in inspection.faults for edit in fault.edits)
+        new = [edit for edit in wanted if not (isinstance(edit, Insert) and edit in done)]
         if not new and files:
             break
         done += new
+        asked = asked or len(done)
         files = fixed(path, model, done, out)
         try:
             inspection = Inspection(inspect_model(out, **names), inspection.stated)
@@ -75,7 +77,7 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
                 file.unlink()
             raise InputError("--write", out, "a model that can be inspected",
                              f"fix by hand what is said of it ({error})") from error  # fmt: skip
-    return Fixed(files, tuple(done), inspection)
+    return Fixed(files, tuple(done), tuple(done[asked:]), inspection)
 
 
 @cache
@@ -136,10 +138,18 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
               "[model]", f'file = "{file.name}"']  # fmt: skip
     lines += [f'{name} = "{value}"' for name, value in names.items() if value is not None]
     lines += ["[motion]", f"speed = {SPEED}"]
-    most, cells = expected(found, SPEED).interval[1], [joint.cell for joint in found.joints]
-    lines += [
-        "[tolerances]",
-        f'rms = {{ limit = {most:.2g}, reason = "the most that inspect expects of this model" }}',
-        f'transition = {{ limit = {max(cells) / length / 2:.2g}, reason = "half a link" }}',
-    ]
+    lines += ["[tolerances]", *_tolerances(found)]
     return "\n".join(lines) + "\n"
+
+
+def _tolerances(found: MeasuredBeam) -> Iterator[str]:
+    most, ends = expected(found, SPEED).interval[1], [joint.s for joint in found.joints]
+    links = np.diff(ends, prepend=0.0, append=found.length) / found.length
+    late = Rate(SPEED, found.damping_ratio).lateness
+    for name, limit, reason in (
+        ("rms", most, "the most that inspect expects of this model"),
+        ("transition", links.max() / 2, "half a link"),
+        ("snap_off", _WAY * most, "rms times the way of its side on the object"),
+        ("lateness", late, f"at {SPEED} L/T1 it takes time to let go, by inertia and dampers"),
+    ):
+        yield f'{name} = {{ limit = {limit:.2g}, reason = "{reason}" }}'

@@ -9,9 +9,15 @@ import numpy as np
 
 from analytic import Beam
 from compare.simulate.links import order_in_links
-from compare.simulate.remark import Remark
+from compare.simulate.remark import RIGIDITY, Remark
 from compare.simulate.remarks import remarks
-from compare.simulate.rigidity import as_intended, at_its_tip, clamp_stiffness, elastica_error
+from compare.simulate.rigidity import (
+    as_intended,
+    at_its_tip,
+    clamp_stiffness,
+    counted_twice,
+    elastica_error,
+)
 from mujoco_models import OwnModel, inspect_model
 from mujoco_models.inspect.measured import MeasuredBeam
 
@@ -62,16 +68,21 @@ class Inspection:
             yield "large bending", f"tip within {error:.1e} L of the exact cantilever"
         order = order_in_links(found)
         if order is not None:
-            with_its_own = f"{order.order:.1f}: tip off by {order.error:.1e} L with its joints' EI"
-            twice = f"{order.error_of_twice:.1e} L with {2 * order.links:.0f} links laid out alike"
-            yield "order in its links", f"{with_its_own}, by {twice}"
+            own = f"tip off by {order.error:.1e} L with its joints' EI"
+            finer = ", ".join(
+                f"by {error:.1e} L with {times * order.links:.0f}"
+                for times, error in ((2, order.error_of_twice), (4, order.error_of_fourfold))
+            )
+            yield "order in its links", f"{order.order:.1f}: {own}; links laid out alike: {finer}"
         stiffness = clamp_stiffness(found)
         yield (
             "clamp",
             "rigid" if np.isinf(stiffness) else f"turns, by a spring of {stiffness:.3g} EI/L",
         )
         yield "natural curvature", f"{found.natural_curvature * length:.3g}/L"
-        yield "mass", f"{found.mass:.4g}"
+        twice = counted_twice(found)
+        by_density = f"; of a mass by density {twice:.1%} is in two capsules at once"
+        yield "mass", f"{found.mass:.4g}{by_density if twice > RIGIDITY else ''}"
         yield "first period T1", f"{period:.4g}; damping ratio {found.damping_ratio:.3g}"
         fraction = found.timestep / period
         yield "time step", f"{found.timestep:g} ({fraction:.2g} T1), {found.integrator}"

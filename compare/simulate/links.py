@@ -26,7 +26,9 @@ class OrderInLinks:
     # Of the measured one: the largest distance of the tip from that of the exact cantilever with
     # the EI that its joints stand for, of all loads [L].
     error: float
-    error_of_twice: float  # of a chain of the same layout with twice as many links [L]
+    # Of chains of the same layout with twice and four times as many links, which the order is of.
+    error_of_twice: float  # [L]
+    error_of_fourfold: float  # [L]
 
 
 def order_in_links(found: MeasuredBeam) -> OrderInLinks | None:
@@ -67,6 +69,7 @@ def order_in_links(found: MeasuredBeam) -> OrderInLinks | None:
         order=math.log(middle / fine) / math.log(fourfold / twice),
         error=_farthest(found.bent / found.length - exact),
         error_of_twice=middle,
+        error_of_fourfold=fine,
     )
 
 

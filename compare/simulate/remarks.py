@@ -7,7 +7,7 @@ import numpy as np
 from analytic import Beam
 from compare.simulate import treatment
 from compare.simulate.foot import on_foot
-from compare.simulate.remark import FORCE, RIGIDITY, SINKS, SINKS_RUBBING, Remark
+from compare.simulate.remark import FORCE, HARDEST_RUBBING, RIGIDITY, SINKS, SINKS_RUBBING, Remark
 from compare.simulate.rigidity import (
     as_intended,
     as_stated,
@@ -16,6 +16,7 @@ from compare.simulate.rigidity import (
     by_its_links,
     contact_stiffness,
     elastica_error,
+    is_cone,
     is_curved,
     moving,
     radii,
@@ -45,10 +46,6 @@ _HARDEST = 30.0  # EI/L^3 times the time step [T1] squared
 # The same over the square of the number of joints: ten take 1e3 at T1/1000, forty at T1/5000
 # without chatter (`mujoco_models/quasi-static.md`).
 _HARDEST_EXPLICIT = 0.1
-# Stiffness [EI/L^3] and rate of the damper [1/T1] of a contact that rubs, times its coefficient
-# squared, at damping ratios of 0.25 to 1: of 60 stations at most 4 chatter up to 8.0e3, 10 to 20
-# at 8.6e3 to 35e3, 57 at 9e5. Lighter damping rings, at some stiffnesses.
-_HARDEST_RUBBING = 7e3
 _READS = 0.01  # of a load, by the sensor that should read all of it
 # What MuJoCo's solver leaves undone (`MeasuredBeam.undone`): 400 cost a whip of 14 links nothing,
 # 4,000 made 13 % rms of it, as contacts did not hold.
@@ -56,6 +53,7 @@ _MOST_UNDONE, _LITTLE_UNDONE = 1e3, 10.0
 _LONGEST_STEP = 0.05  # T1; leaves about 0.8 per cent
 _FIRST = 2 * np.pi / 3.51602  # of a uniform cantilever: T1 over sqrt(m L^3/EI)
 _TURNING = 3.0  # times that; all of the mass at the tip makes 2.03
+_UNDAMPED = 1e-6  # ratio; a joint of that rings for a hundred thousand periods
 _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
@@ -103,9 +101,12 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
                          edits=treatment.stiffened(
                              found, {i: 1 / (joint.compliance * (1 + off_by))}
                          ))  # fmt: skip
-    if tapers(found):
-        yield Remark("note", "uniformity", f"EI goes from {rigidity[0]:.4g} at the clamp to "
-                     f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
+    if tapers(found) or not is_cone(found):
+        (start, end), ends = radii(found), smooth_rigidity(found, np.array([0.0, found.length]))
+        solid = (f"; with radii from {start:.4g} to {end:.4g} one that is solid would have "
+                 f"{ends[0] * (end / start) ** 4:.4g} there, by r^4")  # fmt: skip
+        yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
+                     f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
     if abs(off) <= RIGIDITY and error > _ELASTICA and not found.limits:
         straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
@@ -171,13 +172,15 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
 
 def _surface(found: MeasuredBeam) -> Iterator[Remark]:
     """Whether it is as thick as a cylinder or a cone."""
-    off = unevenness(found)
-    worst = max(off, key=lambda geom: abs(off[geom]), default=found.geoms[0])
-    step = off.get(worst, 0.0) / found.length
-    if abs(step) > _RADIUS:
-        start, end = radii(found)
-        yield Remark("fault", "radius", f"{worst.name!r} is {abs(step):.1e} L "
-                     f"{'thicker' if step > 0 else 'thinner'} than a straight course from "
+    off, (start, end) = unevenness(found), radii(found)
+    # A piece of one radius is a step of a taper, at its end by so much.
+    most = {g: abs(by) + (start - end) * (g.end - g.start) / 2 / found.length
+            for g, by in off.items()}  # fmt: skip
+    worst = max(most, key=most.__getitem__, default=found.geoms[0])
+    step = most.get(worst, 0.0) / found.length
+    if step > _RADIUS:
+        yield Remark("fault", "radius", f"{worst.name!r} is up to {step:.1e} L "
+                     f"{'thinner' if off[worst] < 0 else 'thicker'} than a straight course from "
                      f"{start:.4g} to {end:.4g}: what touches it feels steps",
                      "give all geoms one radius, or a straight taper", treatment.evened(found, off)
                      )  # fmt: skip
@@ -327,38 +330,40 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     if not meeting:
         return
     softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
-    sinks = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
+    sinks, said = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness, list[str]()
     if sinks > (SINKS_RUBBING if softest.friction else SINKS):
         depth = f"{sinks:.1e} L into the object"
         if sinks * found.length > 2 * softest.radius:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
-        yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {FORCE:g} "
-                     f"EI/L^2 sinks {depth}", edits=treatment.hardened(found))  # fmt: skip
+        said.append(f"{_softness(softest, found)} a force of {FORCE:g} EI/L^2 sinks {depth}")
     hard, fraction = contact_stiffness(found), found.timestep / found.period
     explicit = found.integrator in _EXPLICIT
     hardest = _HARDEST_EXPLICIT / len(found.joints) ** 2 if explicit else _HARDEST
     if hard * fraction**2 > hardest:
         where = f"{found.integrator} at steps" if explicit else "steps"
-        yield Remark("fault", "contact", f"{hard:.2g} EI/L^3 is too hard for {where} of "
-                     f"{fraction:.2g} T1: it chatters{' or diverges' if explicit else ''}",
-                     edits=treatment.hardened(found))  # fmt: skip
+        said.append(f"{hard:.2g} EI/L^3 is too hard for {where} of {fraction:.2g} T1: it chatters"
+                    f"{' or diverges' if explicit else ''}")  # fmt: skip
     thickest = max(meeting, key=lambda geom: geom.margin)
     if abs(thickest.margin) > _RADIUS * found.length:
         yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
                      "anything touches, as if the vibrissa were so much thicker",
                      edits=treatment.contacts(found, margin="0", gap="0"))  # fmt: skip
     rubs, decay = (max(getattr(g, x) for g in meeting) for x in ("friction", "decay"))
-    if rubs > 0 and found.cone == "pyramidal":
-        which = ", MuJoCo's default," if rubs == 1 else ""
-        yield Remark("fault", "contact", f"friction {rubs:g}{which} by a pyramidal cone chatters",
+    steps = treatment.steps(found) if said else ()
+    chatters = rubs**2 * hard * decay * found.period > HARDEST_RUBBING
+    if rubs > 0 and (found.cone == "pyramidal" or (chatters and rubs == 1)):
+        which, cone = ", MuJoCo's default," if rubs == 1 else "", found.cone
+        yield Remark("fault", "contact", f"friction {rubs:g}{which} by a {cone} cone chatters",
                      edits=treatment.frictionless(found))  # fmt: skip
-    elif rubs**2 * hard * decay * found.period > _HARDEST_RUBBING:
-        yield Remark("fault", "contact", f"friction {rubs:g} chatters in contacts of {hard:.2g} "
-                     f"EI/L^3 whose damper acts within {1 / decay / found.period:.2g} T1",
-                     edits=treatment.rubbing(found, rubs))  # fmt: skip
+    elif chatters:
+        said.append(f"friction {rubs:g} chatters in contacts of {hard:.2g} EI/L^3 whose damper "
+                    f"acts within {1 / decay / found.period:.2g} T1")  # fmt: skip
     elif rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "
                      'condim="1"')  # fmt: skip
+    if said:
+        yield Remark("fault", "contact", "; and ".join(said),
+                     edits=(*steps, *treatment.touching(found, rubs)))  # fmt: skip
 
 
 def _softness(geom: Geom, found: MeasuredBeam) -> str:
@@ -396,6 +401,10 @@ def _steps(found: MeasuredBeam) -> Iterator[Remark]:
     if found.damping_ratio > 1:
         yield Remark("fault", "damping", f"{found.damping_ratio:.2g} times critical: the vibrissa "
                      "lags behind the foot", edits=treatment.damped(found))  # fmt: skip
+    elif found.damping_ratio < _UNDAMPED:
+        yield Remark("note", "damping", "no dampers: what a contact or its release sets swinging "
+                     f"swings on{'' if explicit else ', but for what steps take away'}"
+                     )  # fmt: skip
 
 
 def _solver(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:

@@ -126,9 +126,19 @@ def contact_stiffness(found: MeasuredBeam) -> float:
 
 
 def radii(found: MeasuredBeam) -> tuple[float, float]:
-    """At the clamp and at the tip, of what touches; beads on a thinner rod are one cylinder."""
-    own = [geom.radius for geom in found.geoms if geom.meets] or [found.geoms[0].radius]
-    return (own[0], own[-1]) if own[-1] <= own[0] else (max(own), max(own))
+    """At the clamp and at the tip, of what touches; beads on a thinner rod are one cylinder.
+
+    Of a taper in steps, which has these radii in the middle of its first and its last geom.
+    """
+    own = [geom for geom in found.geoms if geom.meets] or [found.geoms[0]]
+    first, last = own[0], own[-1]
+    if last.radius > first.radius:
+        return (max(geom.radius for geom in own),) * 2
+    if last.radius == first.radius or last.middle <= first.middle:
+        return first.radius, last.radius
+    slope = (last.radius - first.radius) / (last.middle - first.middle)
+    tip = last.radius + slope * (found.length - last.middle)
+    return first.radius - slope * first.middle, tip if tip > 0 else last.radius
 
 
 def unevenness(found: MeasuredBeam) -> dict[Geom, float]:
@@ -139,6 +149,13 @@ def unevenness(found: MeasuredBeam) -> dict[Geom, float]:
         for geom in found.geoms
         if geom.meets
     }
+
+
+def counted_twice(found: MeasuredBeam) -> float:
+    """The share of its capsules' volume where the round ends of one are in the next one."""
+    balls = np.array([4 / 3 * np.pi * geom.radius**3 for geom in found.geoms if geom.rounded])
+    rods = sum(np.pi * g.radius**2 * (g.end - g.start) for g in found.geoms if g.rounded)
+    return float(balls[1:].sum() / (balls.sum() + rods)) if balls.size else 0.0
 
 
 def is_cone(found: MeasuredBeam) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from compare.simulate.remark import HARDEST_RUBBING
 from compare.simulate.rigidity import as_intended, flexibility, joint_arms, moving
 from mujoco_models.fix.edit import Edit, Insert, number
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
@@ -54,22 +55,22 @@ def hardest(found: MeasuredBeam) -> str:
     return f"{number(2 * timestep(found))} 1"
 
 
-def hardened(found: MeasuredBeam) -> tuple[Edit, ...]:
-    """Contacts that neither sink in nor chatter, at a time step that takes them."""
-    own = contacts(found, solref=hardest(found), solimp=f"{_IMPEDANCE} {_IMPEDANCE} 0.001",
-                   priority="1")  # fmt: skip
-    return (*steps(found), *own)
+def touching(found: MeasuredBeam, friction: float) -> tuple[Edit, ...]:
+    """Contacts as hard as the time step of `steps` takes.
 
-
-def rubbing(found: MeasuredBeam, friction: float) -> tuple[Edit, ...]:
-    """Contacts that swing rather than stop at once, as soft as they may be, if these can rub so."""
-    if friction == 1:
-        return frictionless(found)
-    wanted = _RUBBING * as_intended(found) / found.length**3
-    lightest = max(geom.weight for geom in moving(found))
-    swing = 1 / math.sqrt(wanted * (1 - _IMPEDANCE) * lightest)
-    return contacts(found, solref=f"{number(swing / _SWINGING)} {_SWINGING}",
-                    solimp=f"{_IMPEDANCE} {_IMPEDANCE} 0.001", priority="1")  # fmt: skip
+    Where those would chatter by friction that somebody stated, they swing rather than stop at once,
+    and are as soft as they may be.
+    """
+    solref, step, rubs = hardest(found), timestep(found), 0.0 if friction == 1 else friction
+    lightest = max((geom.weight for geom in moving(found)), default=0.0)
+    if rubs and lightest:
+        unit = as_intended(found) / found.length**3
+        yields = (1 - _IMPEDANCE) * lightest * unit
+        hard, decay = 1 / (4 * step**2 * yields), found.period / (_IMPEDANCE * step)
+        if rubs**2 * hard * decay > HARDEST_RUBBING:
+            solref = f"{number(1 / math.sqrt(_RUBBING * yields) / _SWINGING)} {_SWINGING}"
+    solimp = f"{_IMPEDANCE} {_IMPEDANCE} 0.001"
+    return contacts(found, solref=solref, solimp=solimp, priority="1")
 
 
 def frictionless(found: MeasuredBeam) -> tuple[Edit, ...]:

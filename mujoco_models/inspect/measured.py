@@ -71,6 +71,7 @@ class Geom:
     end: float  # arc lengths of its axis [length]
     radius: float  # [length]
     size: tuple[float, ...]  # MuJoCo's of a sphere, capsule or cylinder; of others empty
+    rounded: bool  # whether its ends are round, and reach beyond its axis: a capsule
     # Whether it collides with an object that has MuJoCo's default contype and conaffinity.
     meets: bool
     weight: float  # the acceleration by a unit of force that MuJoCo takes; 0 if it cannot move

@@ -89,6 +89,7 @@ def _geom(
         end=end,
         radius=piece.radius,
         size=size_of(model, piece.number) if piece.kind == "geom" else (),
+        rounded=piece.kind == "geom" and stated("type") == mujoco.mjtGeom.mjGEOM_CAPSULE,
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
         weight=weight,
         stiffness=stiffness,

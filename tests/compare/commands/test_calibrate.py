@@ -1,10 +1,14 @@
 """`vibrissa calibrate`: what is printed, written, and refused."""
 
 import json
+import subprocess
+import sys
 
+import numpy as np
 import pytest
 
-from analytic import Case, Sweep, circle, solve_sweep
+from analytic import SENSED, Case, Readings, Sweep, circle, relative_noise, solve_sweep
+from tests.analytic.noisy import noisy
 from tests.compare.command import vibrissa
 
 OBJECT = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n'
@@ -51,6 +55,29 @@ def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
     )  # fmt: skip
     done.ended(1, "something else is not as the case says")
     assert (tmp_path / "results").exists()
+
+
+@pytest.mark.slow
+def test_ten_passes_of_6000_rows_take_less_than_300_mb(folder, tmp_path):
+    """Peak of a process of its own: 250 to 275 MB, of which Python and libraries have 200."""
+    exact = solve_sweep(Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(200)))
+    places = np.linspace(*exact.values("foot_x")[[0, -1]], 6000)
+    columns = [np.interp(-places, -exact.values("foot_x"), exact.values(name)) for name in SENSED]
+    dense = Readings.of(dict(zip(SENSED, columns, strict=True)), exact.beam)
+    dense.table["force_x"] += 0.02 * np.sin(2 * np.pi * np.arange(6000) / 20)  # hum has columns too
+    for i in range(10):
+        noisy(dense, relative_noise(dense, 0.01), i).write(tmp_path / f"{i}.parquet")
+    code = (
+        "import resource; from compare.commands.main import app; app(standalone_mode=False); "
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    files = [*(f"{i}.parquet" for i in range(10)), folder / "object.toml"]
+    done = subprocess.run(
+        [sys.executable, "-c", code, "calibrate", *files],
+        cwd=tmp_path, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert "From 5" in done.stdout  # 5x,xxx stations
+    assert int(done.stdout.split()[-1]) * 1024 < 300e6
 
 
 @pytest.mark.slow

@@ -1,8 +1,11 @@
 """What more links of the same layout would give: held against models that have them."""
 
+import re
+
 import numpy as np
 import pytest
 
+from compare.simulate.inspection import Inspection
 from compare.simulate.links import order_in_links, tips_of_chain
 from compare.simulate.rigidity import tip_of
 from mujoco_models import inspect_model, shipped_models
@@ -28,7 +31,17 @@ def test_the_order_is_that_of_models_with_twice_as_many_links(tmp_path, layout, 
     assert found.order == pytest.approx(expected, abs=0.03)
     # MuJoCo's own chain of 20, against what that of 10 said of it.
     assert twice.error == pytest.approx(found.error_of_twice, rel=2e-3)
+    assert twice.error_of_twice == pytest.approx(found.error_of_fourfold, rel=2e-3)
+    assert found.order == pytest.approx(np.log2(found.error_of_twice / found.error_of_fourfold))
     assert np.log2(found.error / twice.error) == pytest.approx(expected, abs=0.05)
+
+
+def test_the_order_is_printed_with_the_two_that_it_is_of(tmp_path):
+    found = Inspection(inspect_model(Chain(links=10).write(tmp_path)))
+    (line,) = (line for line in found.lines() if "order in its links" in line)
+    order, own, twice, fourfold = (float(x) for x in re.findall(r"[\d.]+e-\d+|\d\.\d", line))
+    assert own > twice > fourfold
+    assert np.log2(twice / fourfold) == pytest.approx(order, abs=0.06)
 
 
 def test_fine_chains_tend_to_the_exact_cantilever():

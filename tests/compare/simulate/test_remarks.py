@@ -1,5 +1,6 @@
 """Planted mistakes are named, and sound models are called sound."""
 
+import re
 from dataclasses import replace
 
 import mujoco
@@ -9,7 +10,7 @@ import pytest
 from analytic import Beam
 from compare.simulate.fixing import fix
 from compare.simulate.inspection import Inspection
-from compare.simulate.rigidity import clamp_stiffness
+from compare.simulate.rigidity import clamp_stiffness, counted_twice
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
 from tests.compare.simulate.faults import WIRE, faults_in, rods
@@ -248,6 +249,70 @@ def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
     assert faults_in(before) == {"clamp"}
     assert after.sound, after.remarks
     assert after.found.length == pytest.approx(0.1 * (1 - 1 / 40), rel=1e-3)
+
+
+def test_a_contact_that_is_too_soft_and_too_hard_has_one_prescription(tmp_path):
+    """Explicit steps of T1/10 take no contact that holds: what is said of both sets one solref."""
+    steps = ('timestep="0.01" integrator="discrete"', 'timestep="0.1" integrator="Euler"')
+    before = changed(tmp_path, Chain(), steps, ('solref="0.02 1"', 'solref="0.5 1"'))
+    said = [fault for fault in before.faults if fault.subject == "contact"]
+    assert len(said) == 1
+    assert "EI/L^2 sinks" in said[0].text
+    assert "too hard for euler" in said[0].text
+    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml")
+    assert after.inspection.sound
+    text = (tmp_path / "fixed.xml").read_text()
+    asked = [str(edit) for fault in before.faults for edit in fault.edits]
+    # What was said, and then what is said as it is written, is what stands there.
+    last = next(s for s in reversed([*asked, *map(str, after.followed)]) if "solref" in s)
+    assert all(attribute in text for attribute in last.replace('" ', '"\n').splitlines())
+    assert text.count("solref=") == text.count(last.split(" solimp")[0])
+
+
+def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):
+    """And not as hard as steps allow, which would chatter."""
+    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
+    before = changed(tmp_path, Chain(), *rubbing, ('solref="0.02 1"', 'solref="0.5 1"'))
+    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml")
+    assert after.inspection.sound
+    assert after.followed == ()
+
+
+def test_no_dampers_are_noted(tmp_path):
+    """Swept at 0.05 L/T1 readings are moved by less than 1e-4: no fault."""
+    assert "damping" not in {r.subject for r in changed(tmp_path, Chain()).remarks}
+    path = tmp_path / "whisker.xml"
+    path.write_text(re.sub(' damping="[^"]*"', "", path.read_text()))
+    (said,) = (r for r in Inspection(inspect_model(path)).remarks if r.subject == "damping")
+    assert said.kind == "note"
+    assert "no dampers" in said.text
+
+
+CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
+
+
+@pytest.mark.parametrize(("tapered", "noted"), [(True, False), (False, True)])
+def test_a_taper_of_ei_without_one_of_radius_is_noted(tmp_path, tapered, noted):
+    path = Chain(stiffer=CONE).write(tmp_path)
+    text = path.read_text()
+    for i in range(21) if tapered else ():
+        middle = 0.0125 if i == 0 else min(0.05 * i, 0.9875)
+        name = f'name="whisker-geom{i}"'
+        text = text.replace(name, f'{name} size="{0.005 * (0.98 - 0.8 * middle)}"')
+    path.write_text(text)
+    found = Inspection(inspect_model(path))
+    (said,) = (r.text for r in found.remarks if r.subject == "uniformity")
+    assert ("one that is solid would have" in said) is noted
+    assert "EI goes from 0.9224 at the clamp to 0.00105 at the tip" in said  # 0.98^4 and 0.18^4
+
+
+def test_round_ends_that_are_in_two_capsules_are_counted(tmp_path):
+    """Of 20 capsules of 0.05 and a radius of 0.005: of each 4 r/3 over the length and that."""
+    found = Inspection(inspect_model(Chain(links=20).write(tmp_path)))
+    assert counted_twice(found.found) == pytest.approx(20 * 4 / 3 * 5e-3 / (1 + 21 * 4 / 3 * 5e-3))
+    path = tmp_path / "whisker.xml"
+    path.write_text(path.read_text().replace('type="capsule"', 'type="cylinder"'))
+    assert counted_twice(inspect_model(path)) == 0
 
 
 LIMIT = 'limited="true" range="-0.01 0.01" solreflimit="{} 1"'
