@@ -73,11 +73,9 @@ class SpatialCase(Shown):
             within(
                 "friction", self.friction, _LEAST_FRICTION, 1.0, "0 is none, 0.1 to 0.5 is usual"
             )
-        if self.friction and not self.body.smooth:
-            allowed = f"0 past a body with edges ({self.body.label}): a contact hops over them"
-            raise InputError(
-                "friction", self.friction, allowed, "take a smooth body, or leave it out"
-            )
+        if self.friction and not self.body.smooth and self.beam.radius == 0:
+            allowed = f"0 for a vibrissa without a radius past edges ({self.body.label})"
+            raise InputError("friction", self.friction, allowed, "give the vibrissa a radius")
         self._check_place()
         way = self.way
         begin = way.gap(0.0)

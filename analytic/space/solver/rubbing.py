@@ -1,17 +1,20 @@
 """Along the way of the foot with friction: contacts slide, stick, change phase, and end."""
 
 from collections.abc import Iterator
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import across
+from analytic.space.problem.bodies.body import Spot, across
+from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.straight import StraightVibrissa
 from analytic.space.solver.contact import APART, Scene
+from analytic.space.solver.hop import DependsOnMotion
 from analytic.space.solver.panel import POINTS, Law, Panel, panel
-from analytic.space.solver.sliding import Leg, Sliding, state_of
+from analytic.space.solver.sliding import BY_TRAVEL, Leg, Sliding, state_of
 from analytic.space.solver.walk import LOOSE, Walker
 
 _LOOKED_AT = 720  # directions
@@ -19,13 +22,16 @@ _ALIKE = 1e-9  # of the foot's speed
 _BEFORE = 1e-13  # L of the way: touching, but not within
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's tangent
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
+_SHORT = 1e-3, 1e-6  # of panels past an edge, if something happens soon
 _SAFE = 0.8  # of a length that would just be short enough
 _LAST = "slip-off", "release"
 _CLOSE = 1e-14  # of a panel, to which events are enclosed
 # How much coarser the panel of a first contact may be: with so little force rounding leaves more of
 # friction's direction, and it is steep. What follows forgets it.
 _STEEP = 1e3
+_AHEAD = 1e-8  # of the state's vector, past an edge
 _MARKED = 1e-12  # L, to a corner of the way
+_ON = 1e-12  # L; a point that is farther from the body's nearest one is on another face or edge
 _STILL = 1e-9  # of a speed: a contact that has just begun to slide hardly does
 
 
@@ -120,23 +126,53 @@ class Rubbing(Walker[Rubbed]):
         known = contact.stretch.event in _LAST
         return super()._end(contact, travel) if known else "diverged"
 
+    def _land(self, contact: Rubbed, travel: float) -> None:
+        """Past edges it may be caught again, on a face or by a corner."""
+        if not self._scene.body.smooth and contact.stretch.event == "slip-off":
+            raise DependsOnMotion
+
     def _after(self, stretch: Stretch) -> Stretch | None:
         """What follows; none after the last of a contact."""
         done, state, event = stretch.panel, stretch.last, stretch.event
         if event in _LAST:
             return None
-        sticks, leg = done.law.sticks, done.law.leg
+        sticks, leg, scene = done.law.sticks, done.law.leg, done.scene
         if event == "phase":
-            state = state_of(self._scene, state.vector, not state.contact.tangent)
+            state = state_of(scene, state.vector, not state.contact.tangent)
         elif event in ("stick", "slide"):
             sticks = not sticks
         elif event == "corner":
             leg = self._leg(state.travel)
+        elif event == "edge":
+            ahead = done.beyond(stretch.end + _AHEAD / done.reach)
+            scene = self._on(self._scene.body.nearest(ahead[:3], APART))
+            state = state_of(scene, state.vector, state.contact.tangent)
+            law = Law(leg, self._friction, sticks)  # the edge was found to `_ON` only
+            state = law.settled(scene, state, BY_TRAVEL, state.travel) or state
         reach = min(done.reach * min(_change(done), _LONGER), _LONGEST)
+        if event is not None and not self._scene.body.smooth:
+            return self._lasting(stretch, leg, state, sticks, reach)
         found = self._panel(leg, state, sticks, reach, done if event is None else None)
         if found is not None and not sticks and self._margins(found, 0)["stick"] < -_STILL:
             found = self._panel(leg, state, True, reach, None)  # the foot has turned
         return None if found is None else self._stretch(found)
+
+    def _lasting(
+        self, before: Stretch, leg: Leg, state: Sliding, sticks: bool, reach: float
+    ) -> Stretch | None:
+        """Sliding or sticking past an edge, whichever goes on; neither, and it lets go there."""
+        known = False
+        for law, most in product((sticks, not sticks), (reach, *_SHORT)):
+            found = self._panel(leg, state, law, most, None)
+            known |= found is not None
+            if found is not None and min(self._margins(found, 1).values()) > 0:
+                return self._stretch(found)
+        return before._replace(event="slip-off") if known else None
+
+    def _on(self, spot: Spot) -> Scene:
+        """The face, edge or corner that a spot of a body with edges is on, alone."""
+        smooth = self._scene.body.smooth
+        return self._scene if smooth else self._scene._replace(body=Feature.of(spot))
 
     def _leg(self, travel: float) -> Leg:
         begins = self._way.marks[:-1]
@@ -147,10 +183,10 @@ class Rubbing(Walker[Rubbed]):
         self, leg: Leg, state: Sliding, sticks: bool, reach: float, before: Panel | None
     ) -> Panel | None:
         """As long as its polynomials may be."""
-        law = Law(leg, self._friction, sticks)
+        law, scene = Law(leg, self._friction, sticks), self._on(state.contact.spot)
         allowed = 1 if state.contact.force > 0 else _STEEP
         while reach > _SHORTEST:
-            found = panel(self._scene, law, state, reach, before)
+            found = panel(scene, law, state, reach, before)
             if found is not None and found.coarse <= allowed:
                 return found
             reach *= _SHORTER if found is None else max(_change(found), _SHORTER)
@@ -189,6 +225,9 @@ class Rubbing(Walker[Rubbed]):
             margins["slide"] = self._friction - size
         else:
             margins["stick"] = -float(velocity @ state.rub) / size
+        if not self._scene.body.smooth:
+            nearest = self._scene.body.nearest(contact.on_parallel, APART).point
+            margins["edge"] = _ON - float(np.linalg.norm(nearest - contact.spot.point))
         ahead = self._way.marks[self._way.marks > found.law.leg.travel]
         if len(ahead) > 1:
             margins["corner"] = float(ahead[0]) - state.travel

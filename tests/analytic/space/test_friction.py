@@ -24,7 +24,7 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.checks.rod import integrate_rod
-from analytic.space.problem.readings import FORCE, FRICTION, MOMENT
+from analytic.space.problem.readings import CONTACT_POINT, FORCE, FRICTION, MOMENT, NORMAL
 from analytic.space.solver.contact import Scene
 from analytic.space.solver.rubbing import Rubbed, Rubbing
 
@@ -222,11 +222,70 @@ def test_coulomb_s_law_of_any_case(friction: float, aside: float, turn: float) -
     _steps_agree(friction, aside, turn)
 
 
-def test_edges_and_odd_numbers_are_refused() -> None:
+SHARP = polygon([(-1.2, 1.3), (-0.5, 0.6), (0, 0.4), (0.5, 0.6), (1.2, 1.3)])
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3])
+def test_across_edges_it_is_the_plane_s(friction: float) -> None:
+    """But for the moment of friction at the skin, which goes with the radius."""
+    path = FootPath([[1.2, 0.0], [-1.3, 0.0]], stations=60)
+    off = {}
+    for radius in (1e-3, 1e-5):
+        beam = Beam(radius=radius)
+        way = Sweep(start=1.2, stop=-1.3, stations=60)
+        plane = solve_sweep(Case(beam, SHARP, way, friction=friction))
+        space = solve_space(SpatialCase(beam, body=prism(SHARP), path=path, friction=friction))
+        ok = space.trusted
+        assert ok.sum() > 45 and (plane.table["phase"] == space.table["phase"])[ok].all()
+        names = ("force_x", "force_y", "moment_z")
+        apart = [np.abs(plane.values(x) - space.values(x))[ok].max() for x in names]
+        off[radius] = max(apart)
+        events = [e["foot"][0] for e in space.provenance["events"] if e["kind"] == "phase"]
+        there = [plane.provenance["events"][x] for x in ("phase_b_start", "phase_b_end")]
+        np.testing.assert_allclose(events, there, atol=radius)
+    assert off[1e-5] < 6e-5
+    assert off[1e-3] / off[1e-5] == pytest.approx(100, rel=0.02)
+
+
+def _solid(seed: int) -> SpatialCase:
+    """Past a polyhedron of random corners on a sphere."""
+    draw = np.random.default_rng(seed)
+    corners = draw.normal(size=(int(draw.integers(6, 30)), 3))
+    corners *= draw.uniform(0.4, 1.0) / np.linalg.norm(corners, axis=1)[:, None]
+    body = polyhedron(corners + np.array([0, draw.uniform(1.0, 1.5), 0]))
+    path = FootPath([[1.4, draw.uniform(-0.4, 0.4)], [-1.4, draw.uniform(-0.4, 0.4)]], stations=150)
+    beam = Beam(radius=float(10 ** draw.uniform(-4, -2.3)))
+    return SpatialCase(beam, body=body, path=path, friction=float(draw.uniform(0.05, 0.6)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 3, 6, 7])
+def test_past_a_polyhedron_it_is_at_rest_and_slides_against_friction(seed: int) -> None:
+    """From station to station a tip moves against the friction on it, or does not move."""
+    case = _solid(seed)
+    readings = solve_space(case)
+    assert np.nanmax(rod_residuals(readings)) < 1e-10
+    rub, touching = readings.values(*FRICTION), readings.touching
+    assert np.linalg.norm(rub, axis=1)[touching].max() <= case.friction * (1 + 1e-9)
+    tips = touching & (readings.table["phase"] == "tip")
+    normal = readings.values(*NORMAL)
+    tip = readings.values(*CONTACT_POINT) + case.beam.radius * normal
+    travel, found = readings.values("travel"), 0
+    events = np.searchsorted(travel, [e["travel"] for e in readings.provenance["events"]]) - 1
+    for i in np.setdiff1d(np.flatnonzero(tips[:-1] & tips[1:]), events):
+        moved, mean = tip[i + 1] - tip[i], (rub[i] + rub[i + 1]) / 2
+        size = np.linalg.norm(moved)
+        if size > 1e-6 and np.linalg.norm(normal[i + 1] - normal[i]) < 1e-12:  # on one face
+            found += 1
+            cosine = moved @ mean / size / np.linalg.norm(mean)
+            assert cosine < -1 + 1e-4
+    assert found > 3 or not tips.any()
+
+
+def test_edges_without_a_radius_and_odd_numbers_are_refused() -> None:
     cube = polyhedron([(x, y, z) for x in (-1, 1) for y in (0.6, 2) for z in (-1, 1)])
-    sharp = prism(polygon([(-1, 1), (0, 0.5), (1, 1)]))
     path = FootPath([[1.4, 0.3], [-0.2, 0.1]])
-    for body in (cube, sharp):
+    for body in (cube, prism(SHARP)):
         with pytest.raises(InputError, match="edges"):
             _swept(body, path, 0.2)
     for friction in (-0.1, 2.0, 1e-8, float("nan")):

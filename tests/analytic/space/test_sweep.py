@@ -227,3 +227,14 @@ def test_a_case_that_cannot_be_is_refused_in_one_line(change, says):
 def test_a_path_into_the_body_is_refused():
     with pytest.raises(InputError, match="into the body"):
         swept(sphere(1.0, (0.0, 0.1, 0.0)), [[1.3, 0.2], [-1.5, 0.2]])
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_above_both_ends_of_a_section_the_nearer_side_of_its_prism_is_near(side):
+    """A half circle whose tips go straight up: a vibrissa beside it, taller than that, is clear."""
+    body, apart = prism(circle(0.3, (0.0, 0.3))), 0.25
+    for height in (0.5, 0.7, 2.0):
+        spot = body.nearest(np.array([side * 1.0, height, 0.2]), apart)
+        below = np.hypot(1.0, height - 0.6) - 0.3 if height < 0.6 else 0.7
+        assert spot.distance == pytest.approx(below, abs=1e-12)
+        assert side * spot.normal[0] > 0.9

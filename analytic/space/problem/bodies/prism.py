@@ -84,6 +84,9 @@ class Prism(Body):
         """Parameter of the contour's point from which (x, y) lies along the normal."""
         places = np.linspace(*self.contour.t_range, _PLACES)
         ahead, _ = self._ahead(places, x, y)
+        if ahead[0] <= 0 <= ahead[-1]:  # above both ends: the nearer upright side
+            low, high = self.contour.at(places[[0, -1]]).xi
+            return float(places[0] if 2 * x < low + high else places[-1])
         if ahead[0] <= 0:
             return float(places[0])
         if ahead[-1] >= 0:
