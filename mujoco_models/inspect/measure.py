@@ -109,7 +109,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
         joints=joints,
-        geoms=touching(model, parts, held.data, (nodes[0], axes), probe),
+        geoms=touching(model, parts, held.data, (nodes, axes), probe),
         tip_rigidity=tip_rigidity,
         stretch=bending.stretch,
         loads=loads,

@@ -143,6 +143,32 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path):
     assert found.sound
 
 
+BALL = '<geom name="ball" type="sphere" size="0.005"/>'
+TENTH, LAST, FIRST = (f'<geom name="whisker-geom{i}" ' for i in (10, 20, 1))
+UNSEEN = 'contype="0" conaffinity="0" '
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ((TENTH, f"{BALL}{TENTH}{UNSEEN}"), "nothing can touch from s = 0.4"),
+        ((TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}'), "'arm' stands out from the"),
+        ((TENTH, f"{BALL}{TENTH}"), None),
+    ],
+)
+def test_what_touches_is_along_all_of_it(tmp_path, change, said):
+    """A link whose capsule is only seen, beside a ball that collides, is a hole."""
+    found = changed(tmp_path, Chain(), change)
+    assert [said in str(fault) for fault in found.faults] == ([True] if said else [])
+    assert found.found.length == pytest.approx(1.0)
+
+
+def test_what_stands_out_is_not_to_be_touched(tmp_path):
+    arm = (TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}')
+    before = changed(tmp_path, Chain(), arm)
+    assert fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection.sound
+
+
 def test_a_medium_is_noted(tmp_path):
     found = changed(tmp_path, Chain(), ('integrator="', 'density="1000" integrator="'))
     assert [remark.subject for remark in found.remarks].count("medium") == 1

@@ -1,5 +1,7 @@
 """What is measured of models as people write them, and what is planted in them."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -330,6 +332,37 @@ def test_it_begins_with_what_goes_on_as_it_does_and_is_as_thick(tmp_path, shape,
     turned = 'quat="1 1 0 0"' if "cylinder" in shape else ""
     path.write_text(path.read_text().replace(own, f"<geom {turned} {shape}/>"))
     assert inspect_model(path).length == pytest.approx(1 - begins)
+
+
+@pytest.mark.parametrize("link", [1, 20])
+@pytest.mark.parametrize("behind", [False, True])
+def test_a_ball_on_a_joint_is_neither_where_it_begins_nor_where_it_ends(tmp_path, link, behind):
+    path, ball = Chain().write(tmp_path), '<geom type="sphere" size="0.005"/>'
+    text = path.read_text()
+    (own,) = re.findall(f'<geom name="whisker-geom{link}" [^>]*>', text)
+    path.write_text(text.replace(own, own + ball if behind else ball + own))
+    found = inspect_model(path)
+    assert found.length == pytest.approx(1.0)
+    assert found.joints[0].s == pytest.approx(1 / 40)
+
+
+def test_a_link_at_an_end_without_a_geom_is_named(tmp_path):
+    """Its end is not known: it was taken for that of the link before, which it turns back to."""
+    path = Chain().write(tmp_path)
+    body = '<inertial pos="0 0 0" mass="0.01" diaginertia="1e-6 1e-6 1e-6"/>'
+    path.write_text(re.sub('<geom name="whisker-geom20" [^>]*>', body, path.read_text()))
+    with pytest.raises(InputError, match="'whisker20' of the vibrissa = without a geom"):
+        inspect_model(path)
+    with pytest.raises(InputError, match="'whisker1' of the vibrissa = without a geom"):
+        measured(tmp_path, geoms="whisker-geom2?,whisker-geom?5,whisker-geom20")
+
+
+def test_places_are_arc_lengths_of_a_curved_one_too(tmp_path):
+    """On a straight line from the clamp its tip would be at 0.96 L."""
+    found = measured(tmp_path, Chain(curvature=0.5))
+    assert found.geoms[-1].end == pytest.approx(found.length)
+    assert [g.start for g in found.geoms[1:]] == pytest.approx([j.s for j in found.joints])
+    assert max(geom.aside for geom in found.geoms) < 1e-9
 
 
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
