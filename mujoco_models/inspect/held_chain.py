@@ -16,6 +16,7 @@ _ITERATIONS = 100
 _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
 _NONE = np.zeros(0, int)
+_BARE = 0.75  # of a link: a first piece without a geom, as half of a cell is
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 # All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
 _STAGES = (
@@ -85,11 +86,19 @@ class HeldChain(HeldModel):
     def clamp(self) -> Floats:
         """Where the vibrissa begins: the end of its first geoms that is farthest from the tip.
 
-        Of a plugin's chain, whose first cell nothing makes bend, in it if the sensor is there.
+        Of a plugin's chain, whose first cell nothing makes bend, in it if the sensor is there; and
+        at a sensor behind the first hinge, if the piece between them has no geom.
         """
         ends = self._ends(self.parts.geoms[0])
         near, far = ends[np.argsort(np.linalg.norm(ends - self.tip, axis=1))][[0, -1]]
-        return self.begin(far, near) if self.parts.plugin else np.asarray(far)
+        if self.parts.plugin:
+            return self.begin(far, near)
+        if self.model.body_weldid[self._body(self.parts.geoms[0])] != self.parts.chain[0]:
+            return np.asarray(far)
+        first, second = self.joints[:2]
+        behind = far - _BARE * (second - first)
+        found = self.begin(behind, far)
+        return np.asarray(far) if np.array_equal(found, behind) else found
 
     @property
     def joints(self) -> Floats:

@@ -295,6 +295,15 @@ def test_a_contact_that_is_too_soft_and_too_hard_has_one_prescription(tmp_path):
     assert text.count("solref=") == text.count(last.split(" solimp")[0])
 
 
+@pytest.mark.parametrize(("links", "steps", "chatters"), [(20, 1000, True), (12, 9000, False)])
+def test_explicit_steps_take_contacts_by_the_square_of_the_links(tmp_path, links, steps, chatters):
+    """0.1/N^2 of EI/L^3 times the step squared: of some 4e3 EI/L^3 steps of T1/4000 with 20."""
+    found = inspect_model(Chain(links=links).write(tmp_path))
+    stepped = replace(found, integrator="euler", timestep=found.period / steps)
+    said = " ".join(map(str, Inspection(stepped).faults))
+    assert ("too hard for euler" in said) is chatters
+
+
 def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):
     """And not as hard as steps allow, which would chatter."""
     rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')

@@ -114,7 +114,7 @@ def test_a_free_foot_on_a_hand_is_driven_by_the_hand(tmp_path):
     path = held.write(tmp_path)
     weld = '<equality><weld body1="hand" body2="whisker-foot"/></equality></mujoco>'
     path.write_text(path.read_text().replace("</mujoco>", weld))
-    assert inspect_model(path).drive == "free joint '' on mocap body 'hand', by a weld"
+    assert inspect_model(path).drive == "free joint 'joint 0' on mocap body 'hand', by a weld"
 
 
 def test_a_last_link_may_be_thicker_than_it_is_long(tmp_path):
@@ -325,8 +325,8 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
     ],
 )
 def test_it_begins_with_what_goes_on_as_it_does_and_is_as_thick(tmp_path, shape, begins):
-    """A box of links does, a housing about its axis does not."""
-    path = Chain().write(tmp_path)
+    """A box of links does, a housing about its axis does not, without a sensor there."""
+    path = Chain(sensors="").write(tmp_path)
     own = '<geom name="whisker-geom0" fromto="0 0 0 0 0.025 0"/>'
     assert own in path.read_text()
     turned = 'quat="1 1 0 0"' if "cylinder" in shape else ""
@@ -344,6 +344,25 @@ def test_a_ball_on_a_joint_is_neither_where_it_begins_nor_where_it_ends(tmp_path
     found = inspect_model(path)
     assert found.length == pytest.approx(1.0)
     assert found.joints[0].s == pytest.approx(1 / 40)
+
+
+@pytest.mark.parametrize(("behind", "begins"), [(0.0, 0.0), (0.01, 0.01), (-0.05, 0.025)])
+def test_a_first_piece_without_a_geom_begins_at_the_sensor(tmp_path, behind, begins):
+    """Half a cell before the hinge; what is farther behind is a bracket."""
+    path = Chain(site=f'pos="0 {behind} 0"').write(tmp_path)
+    path.write_text(re.sub('<geom name="whisker-geom0"[^>]*>', "", path.read_text()))
+    found = inspect_model(path)
+    assert found.length == pytest.approx(1 - begins)
+    assert found.joints[0].s == pytest.approx(0.025 - begins, abs=1e-12)
+
+
+def test_what_has_no_name_has_a_number(tmp_path):
+    path = Chain(foot="", inside_foot='<joint type="slide" axis="1 0 0"/>').write(tmp_path)
+    path.write_text(path.read_text().replace('name="F" ', "").replace('name="whisker-foot"', ""))
+    found = inspect_model(path)
+    assert found.force.name == "sensor 0"
+    assert found.foot == "body 1"
+    assert found.drive == "slide 'joint 0' without an actuator"
 
 
 def test_a_link_at_an_end_without_a_geom_is_named(tmp_path):
