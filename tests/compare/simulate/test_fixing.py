@@ -1,5 +1,7 @@
 """What `inspect --write` makes of models that are written badly."""
 
+import re
+
 import pytest
 
 from analytic import find_events, solve_sweep
@@ -86,6 +88,22 @@ def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
     assert faults_in(before) == subjects
     assert after.inspection.sound, after.inspection.remarks
     assert len(after.files) == 1
+
+
+def test_a_step_is_a_fiftieth_of_the_first_period_or_less(tmp_path):
+    _, after = fixed(on_rail(tmp_path, ('timestep="0.01"', 'timestep="18"')))
+    found = after.inspection.found
+    assert 1 / 500 < found.timestep / found.period < 1 / 49
+
+
+def test_a_sensor_goes_to_where_the_vibrissa_begins(tmp_path):
+    """Which is at the first hinge, that nothing is ahead of, and not where its body is."""
+    path = on_rail(tmp_path, site='pos="0 -0.1 0"')
+    path.write_text(re.sub('<geom name="whisker-geom0"[^>]*>', "", path.read_text()))
+    before, after = fixed(path)
+    assert "torque sensor" in faults_in(before)
+    assert after.inspection.sound, after.inspection.faults
+    assert after.inspection.found.torque.clamp == pytest.approx([0, 0.025, 0], abs=1e-9)
 
 
 def test_what_can_leave_its_plane_is_swept_until_it_would(tmp_path):

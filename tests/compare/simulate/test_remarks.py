@@ -184,12 +184,24 @@ def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
     curved = Chain(curvature=0.3)
     assert faults(tmp_path, curved, Beam(natural_curvature=0.3)) == []
     assert faults(tmp_path, curved, Beam(natural_curvature=-0.3)) != []
+    chords = Chain(curvature=0.3, first="end")  # its first and its last piece are straight
+    found = Inspection(inspect_model(chords.write(tmp_path)), Beam(natural_curvature=0.3))
+    assert "natural curvature" not in faults_in(found)
+
+
+def test_links_that_are_too_hard_to_turn_are_named(tmp_path):
+    path = Chain().write(tmp_path)
+    hard = '<inertial pos="0 0.02 0" mass="0.0157" diaginertia="0.1 0.1 0.1"/><joint axis'
+    path.write_text(path.read_text().replace("<joint axis", hard))
+    (said,) = (r.text for r in Inspection(inspect_model(path)).faults if r.subject == "inertia")
+    assert "far too hard to turn" in said
 
 
 @pytest.mark.parametrize(
     ("chain", "stiffness"),
     [
         (Chain(), np.inf),
+        (Chain(first="start", length=2.0), 40.0),  # whatever the length
         (Chain(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
         (Chain(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
         (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),

@@ -356,6 +356,24 @@ def test_a_first_piece_without_a_geom_begins_at_the_sensor(tmp_path, behind, beg
     assert found.joints[0].s == pytest.approx(0.025 - begins, abs=1e-12)
 
 
+def test_what_the_solver_leaves_undone_is_counted_in_periods(tmp_path):
+    """In a unit of time of half a period it is 16 times as much of the vibrissa's energy."""
+    slow, fast = (measured(tmp_path, Chain(rigidity=k)) for k in (1.0, 4.0))
+    assert fast.period == pytest.approx(slow.period / 2)
+    assert fast.undone == pytest.approx(slow.undone / 16)
+
+
+def test_runge_and_kutta_take_longer_steps_than_euler_without_dampers(tmp_path):
+    """2.78 over the highest frequency, for 2."""
+    path = Chain().write(tmp_path)
+    text = re.sub(' damping="[^"]*"', "", path.read_text())
+    steps = []
+    for integrator in ("Euler", "RK4"):
+        path.write_text(text.replace('integrator="discrete"', f'integrator="{integrator}"'))
+        steps.append(inspect_model(path).stable_step)
+    assert steps[1] / steps[0] == pytest.approx(2.78 / 2)
+
+
 def test_what_has_no_name_has_a_number(tmp_path):
     path = Chain(foot="", inside_foot='<joint type="slide" axis="1 0 0"/>').write(tmp_path)
     path.write_text(path.read_text().replace('name="F" ', "").replace('name="whisker-foot"', ""))
