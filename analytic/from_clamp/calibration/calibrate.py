@@ -9,7 +9,7 @@ import numpy as np
 from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
-from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.calibration.unknowns import LAG, OFFSET, UNKNOWNS, Sought, checked_unknowns
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -274,7 +274,9 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
             untouched = f"at {every - touching} of which the best fit does not touch"
             what = f"loaded at {every} stations, {untouched}"
             allowed = "of the case's vibrissa and object, but for the unknowns"
-            remedy = "check foot_x, units and object, or fit offset too"
+            remedy = "check foot_x, units and object"
+            if all(kind.name != OFFSET for kind in fit.kinds):
+                remedy += ", or fit offset too"
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
@@ -285,11 +287,7 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
 
 def _best(fit: LeastSquaresFit) -> tuple[Floats, float]:
     """The best numbers from the case's own, or from elsewhere if those leave too much."""
-    starts = [fit.start]
-    for i, kind in enumerate(fit.kinds):
-        this = np.arange(len(fit.start)) == i
-        starts += [np.where(this, number, fit.start) for number in kind.starts]
-    costs = []
+    starts, costs = fit.starts(), []
     for i, start in enumerate(starts):
         starts[i] = fit.scaled_rigidity(_inside(fit, start))
         costs.append(float(np.sum(fit.misses(starts[i]) ** 2)))

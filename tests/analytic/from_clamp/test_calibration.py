@@ -68,11 +68,13 @@ def test_exact_readings_give_the_numbers_back(profile, direction):
     assert found.explains
 
 
-def test_a_foot_that_is_off_is_found_too():
+@pytest.mark.parametrize("off", [0.1, pytest.param(-0.37, marks=pytest.mark.slow), 40.0])
+def test_a_foot_that_is_off_is_found_too(off):
+    """However far: a stage counts from anywhere, a clock from its start."""
     readings = solve_sweep(SOFT)
-    moved = replace(readings, table=readings.table.assign(foot_x=readings.values("foot_x") + 0.1))
+    moved = replace(readings, table=readings.table.assign(foot_x=readings.values("foot_x") + off))
     found = calibrate(moved, replace(SOFT, clamp_stiffness=math.inf), ["clamp_stiffness", "offset"])
-    assert found.offset == pytest.approx(0.1, abs=1e-8)
+    assert found.offset == pytest.approx(off, abs=1e-8)
     assert found.found["clamp_stiffness"].value == pytest.approx(8.0, rel=1e-6)
 
 
