@@ -18,7 +18,10 @@ _STEPS = 4  # median steps of the foot that are averaged
 _FEWEST = 10  # such averages
 _SLOPES = [f"{name}_slope" for name in CLAMP_READINGS]
 # Of a pass's provenance, what is not of the mean.
-_OF_ONE_PASS = ("pass", "dropped", "rows", "zero_uncertainty", "bend_uncertainty", "lag")
+_OF_ONE_PASS = (
+    *("pass", "dropped", "rows", "lag"),
+    *("zero_uncertainty", "bend_uncertainty", "free_noise"),
+)
 _TOUCHING = 0.02  # of a reading's largest magnitude
 _NEXT_TO_SNAP_OFF = 0.03  # of the loaded travel, where readings grow without bound
 _UNLIKE = 8.0  # times the median scatter, and ...

@@ -247,9 +247,12 @@ def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, E
     jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * freedom else None
     if jittered is not None:
         fit = fit.of(jittered)
+    first = numbers
     numbers, known, relief = _knowing_the_noise(
         fit, numbers, 1.0 if stated and not jittered else 0.0
     )
+    if relief and jittered is not None:
+        cost = float(np.sum(fit.misses(first) ** 2))  # over that noise of which the relief is
     return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / freedom)), known
 
 
