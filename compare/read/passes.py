@@ -166,7 +166,9 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             zero = zero_of(foot_x, before, stretches, name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
-            provenance["free_noise"] = _by_reading(np.nanstd(values[:, free], axis=1).tolist())
+            with np.errstate(over="ignore"):  # such numbers are refused later
+                known = np.nanstd(values[:, free], axis=1)
+            provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:
         fault = error
     table = raw.table.assign(**_by_reading(values))
