@@ -160,7 +160,7 @@ def past(profile, start: float = 1.3, **changed) -> Readings:
         (circle(0.95, (0, 0.45)), r"radius .* -5.00e-02 .*object larger all round by as much$"),
     ],
 )
-def test_an_object_of_another_size_is_told_from_one_that_is_nearer(profile, said):
+def test_another_size_is_not_taken_for_an_object_that_is_nearer(profile, said):
     found = compare(past(circle(1.0, (0, 0.4)), 0.932), past(profile)).likely
     assert re.search(said, str(found))
 
