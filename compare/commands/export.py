@@ -149,15 +149,15 @@ def _quantity(name: str, text: str, unit: str, si: bool) -> float:
 
 def _lines(found: "Prescription", error: float, si: bool) -> list[str]:
     """What was chosen, and what was measured of it."""
-    from compare.simulate.prescription import REFERENCE
+    from compare.simulate.prescription import REFERENCE, REFERENCE_OFF
 
     whisker = found.whisker
     settings, motion, period = whisker.settings, whisker.motion, whisker.period
     second, stiffness = (" s", " N/m") if si else ("", "")
     return [
         f"A {settings.beam} of {settings.segments} segments, swept at {motion.speed:g} L/T1, T1 = "
-        f"{period:.4g}{second}: {found.error:.1e} rms from MuJoCo at rest with {REFERENCE} "
-        f"segments, of {error:g} asked for.",
+        f"{period:.4g}{second}: {found.error:.1e} rms at most, of {error:g} asked for: from MuJoCo "
+        f"at rest with {REFERENCE} segments, and {REFERENCE_OFF:g} that those are off.",
         f"Time step {motion.timestep * period:.4g}{second} (T1/{1 / motion.timestep:g}), "
         f"integrator {motion.integrator}, contacts of {whisker.contact_stiffness:.4g}{stiffness}.",
     ]

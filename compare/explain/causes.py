@@ -187,6 +187,9 @@ def _stated(exact: Resolved, fault: str) -> tuple[float, float]:
     """What the reference has of it, and its unit."""
     if fault == "clamp":
         return 0.0, 1.0
+    if fault in ("object_size", "weight"):
+        # Of a weight that is not stated too much would have to be solved.
+        return 1.0, 1.0 if fault == "object_size" or any(exact.case.weight) else math.nan
     return QUANTITIES[fault].value(exact.case), unit_of(fault, exact.case) or math.nan
 
 

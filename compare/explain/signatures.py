@@ -72,7 +72,24 @@ class Resolved:
         return there - self.seen
 
     def _changed(self, fault: str, size: float) -> Case:
-        """With one of `QUANTITIES` larger, or with a ``"clamp"`` that reaches so far along it."""
+        """With one of `QUANTITIES` larger, or with a ``"clamp"`` that reaches so far along it.
+
+        ``"weight"`` and ``"object_size"`` are larger by a fraction, the object about its lowest
+        point; a ``"radius"`` below zero is an object that is smaller all round.
+        """
+        if fault == "weight":
+            x, y = self.case.weight
+            return replace(self.case, weight=(x * (1 + size), y * (1 + size)))
+        if fault == "object_size":
+            lowest = self.points[self.points[:, 1].argmin()]
+            # Of a smaller one more is within reach than of the reference's.
+            points = _extended(self.points, max(-size, 0.0) * self.case.beam.length)
+            return replace(self.case, profile=_smooth(lowest + (1 + size) * (points - lowest)))
+        if fault == "radius" and size * self.case.beam.length < -self.case.beam.radius:
+            ways = np.gradient(self.points, axis=0)
+            outward = np.stack([ways[:, 1], -ways[:, 0]]) / np.hypot(*ways.T)
+            inside = self.points + size * self.case.beam.length * outward.T
+            return replace(self.case, profile=_smooth(inside))
         if fault != "clamp":
             return QUANTITIES[fault].larger(self.case, size * unit_of(fault, self.case))
         by = size * self.case.beam.length

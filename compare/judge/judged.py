@@ -106,7 +106,7 @@ class Judged(SweepPair[Sweep]):
         """What is to be known of both sweeps, and of the limits that are exceeded."""
         failed = " ".join(self.failures)
         notes: list[str] = [
-            f"note: the {which} is not to be trusted everywhere: {stretch}"
+            f"note: not all stations of the {which} are compared: {stretch}"
             for which, sweep in (("reference", self.reference), ("candidate", self.candidate))
             for stretch in untrusted_stretches(sweep)
             if which == "reference" or stretch not in failed

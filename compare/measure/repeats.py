@@ -18,7 +18,10 @@ _STEPS = 4  # median steps of the foot that are averaged
 _FEWEST = 10  # such averages
 _SLOPES = [f"{name}_slope" for name in CLAMP_READINGS]
 # Of a pass's provenance, what is not of the mean.
-_OF_ONE_PASS = ("pass", "dropped", "rows", "zero_uncertainty", "bend_uncertainty", "lag")
+_OF_ONE_PASS = (
+    *("pass", "dropped", "rows", "lag"),
+    *("zero_uncertainty", "bend_uncertainty", "free_noise"),
+)
 _TOUCHING = 0.02  # of a reading's largest magnitude
 _NEXT_TO_SNAP_OFF = 0.03  # of the loaded travel, where readings grow without bound
 _UNLIKE = 8.0  # times the median scatter, and ...
@@ -40,6 +43,10 @@ class Repeats:
     # creep [length]; what is left of zero and drift, and noise that remembers, count.
     shifts: Consistency
     uncertainty: Floats  # shape (passes,); standard deviations of the shifts [length]
+    # Share of the contact in which passes are so unlike that their mean is of none of them: left
+    # out; and the pass that is farthest from the others there.
+    left_out: float
+    farthest: int
 
 
 def repeats(passes: Sequence[Readings]) -> Repeats:
@@ -51,8 +58,12 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     mean = binned.mean(axis=0)
     scatter = binned.std(axis=0, ddof=1)[:, 1:]
     largest = np.abs(mean[:, 1:]).max(axis=0)
-    kept = np.all(scatter <= _UNLIKE * np.median(scatter, axis=0) + _STEEP * largest, axis=1)
-    kept &= ~_half_loaded(mean[:, 1:] / largest)
+    alike = np.all(scatter <= _UNLIKE * np.median(scatter, axis=0) + _STEEP * largest, axis=1)
+    away = (binned - np.median(binned, axis=0))[:, ~alike, 1:] / largest
+    farthest = int(np.argmax(np.sum(away**2, axis=(1, 2))))
+    loaded = np.any(np.abs(mean[:, 1:]) > _TOUCHING * largest, axis=1)
+    left_out = float(np.mean(~alike[loaded])) if loaded.any() else 0.0
+    kept = alike & ~_half_loaded(loaded)
     mean, ends = mean[kept], ~_between(kept)[kept]
     # What the passes are away from the mean is averaged, not they: it is nearly straight.
     order = np.argsort(mean[:, 0])
@@ -106,16 +117,17 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         _rms((away + shifts.numbers[:, :, None] * slopes) / scale),
         shifts,
         np.sqrt([covariance[0, 0] for _, covariance in found.by_pass]),
+        left_out,
+        farthest,
     )
 
 
-def _half_loaded(readings: Floats) -> Booleans:
+def _half_loaded(loaded: Booleans) -> Booleans:
     """Whether a stretch may hold rows in contact and rows of none: it is loaded beside a free one.
 
-    Relative readings, shape (stretches, 3), along the travel.
+    Of the stretches along the travel.
     """
-    loaded = np.any(np.abs(readings) > _TOUCHING, axis=1)
-    return np.asarray(loaded & ~_between(loaded))
+    return loaded & ~_between(loaded)
 
 
 def _between(these: Booleans) -> Booleans:

@@ -154,6 +154,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
     zero = no_zero(before)
+    provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
     try:
         check_channels(read, name)
         check_ahead(foot_x, before, name)
@@ -165,10 +166,12 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             zero = zero_of(foot_x, before, stretches, name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
+            with np.errstate(over="ignore"):  # such numbers are refused later
+                known = np.nanstd(values[:, free], axis=1)
+            provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:
         fault = error
     table = raw.table.assign(**_by_reading(values))
-    provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
     if speed is not None:
         provenance["speed"] = speed
     if np.isfinite(zero.uncertainty).all():

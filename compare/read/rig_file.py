@@ -22,7 +22,8 @@ class RigColumn(Table):
 
     def scale(self, name: str) -> float:
         """What a cell's unit is in those of the readings."""
-        return self.gain * (unit_in_si(self.unit, DIMENSIONS.get(name, "s")) if self.unit else 1.0)
+        called, dimension = f"columns.{name}.unit", DIMENSIONS.get(name, "s")
+        return self.gain * (unit_in_si(self.unit, dimension, called) if self.unit else 1.0)
 
 
 class RigColumns(Table):
@@ -82,7 +83,7 @@ def read_rig(path: Path) -> Rig:
                 'as { column = "Fx", unit = "mN" } beside length = "50 mm"',
             )
         if unit:
-            unit_in_si(unit, DIMENSIONS[name])
+            unit_in_si(unit, DIMENSIONS[name], file.place(["columns", name, "unit"]))
         if rig.columns[name].gain == 0:
             raise InputError(file.place(["columns", name, "gain"]), 0, "not 0", "correct it")
     return rig

@@ -23,6 +23,7 @@ DIMENSIONS = {name: _SI[one.dimension] for name, one in SCHEMA.items() if one.di
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _LONGEST = 60  # characters of a unit
+_EXAMPLE = "check the unit, as in '50 mm'"
 # Nm and Nmm, as instruments write them; elsewhere Nm is a unit of yarn.
 _JOINED = re.compile(r"(?<!\w)([kmcµμ]?N)([mcµμ]?m)(?!\w)")
 # Names, products, quotients, parentheses, and powers of at most two digits, not raised again.
@@ -49,11 +50,13 @@ def in_si(text: str, dimension: str) -> float:
     return number
 
 
-def unit_in_si(unit: str, dimension: str) -> float:
+def unit_in_si(unit: str, dimension: str, called: str = "quantity") -> float:
     """How many SI units a unit is, as ``unit_in_si("mN mm", "N m")``."""
     found = _parsed(unit)
     if found is None or not found.is_compatible_with(dimension):
-        raise _refused(unit.strip(), f"a unit of {dimension}")
+        weighed = found is not None and (found * _registry()("m/s^2")).is_compatible_with(dimension)
+        remedy = "a gram of force is written gf" if weighed else _EXAMPLE
+        raise _refused(unit.strip(), f"a unit of {dimension}", called, remedy)
     return found.to(dimension).magnitude
 
 
@@ -87,6 +90,8 @@ def _parsed(text: str) -> "pint.Quantity[float] | None":
         return None
 
 
-def _refused(text: str, allowed: str) -> InputError:
+def _refused(
+    text: str, allowed: str, called: str = "quantity", remedy: str = _EXAMPLE
+) -> InputError:
     shown = repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...")
-    return InputError("quantity", shown, allowed, "check the unit, as in '50 mm'")
+    return InputError(called, shown, allowed, remedy)

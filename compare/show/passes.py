@@ -15,6 +15,7 @@ from compare.show.document import Block, Table, Text
 from compare.show.numbers import quantity
 
 _DRIFTS = 0.01  # of the largest reading: more than the noise of most sensors
+_UNLIKE = 0.05  # of the contact; where the vibrissa lets go passes are unlike, too
 _LAG = "lag"  # in the provenance of a pass
 _OFF = 0.02  # of the rigidity; less is within what most vibrissae are known to
 
@@ -73,6 +74,12 @@ def repeats_summary(found: Repeats) -> Iterator[Block]:
         ],
     )
     yield Text(f"foot_x: {consistency_line(found.shifts, found.names)}")
+    if found.left_out > _UNLIKE:
+        yield Text(
+            f"in {found.left_out:.0%} of the contact passes differ by far more than that, most of "
+            f"all {found.names[found.farthest]}: left out of their mean; a clock that jumps, a "
+            "sensor that saturates and another object or vibrissa do so"
+        )
 
 
 def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> str:

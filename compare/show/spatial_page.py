@@ -114,7 +114,7 @@ def _events(comparison: SpatialComparison) -> Iterator[Block]:
     yield Picture(
         "contacts",
         {shows: partial(drawn.contacts_in_space, comparison)},
-        "Above: phases of both sweeps; white is without readings. Below: distance between their "
+        "Above: phases of both sweeps; gaps are without readings. Below: distance between their "
         "contacts; dashed is what its rms may be.",
     )
     said = ""

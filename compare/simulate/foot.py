@@ -1,5 +1,6 @@
 """What there is to say of a model's foot: its drive, and what lies between that and the clamp."""
 
+import math
 from collections.abc import Iterator
 
 from compare.simulate.expected import SPEED
@@ -11,6 +12,11 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 _WAY = 2.0  # L; of the foot, from first touch to release
 _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
+_FELT = 0.03  # of a sweep's force; what a swinging foot may add to it
+_SWINGS, _STIFF = (
+    0.5,
+    0.2,
+)  # T1; the period of a foot on its servo, that shakes it and that does not
 _PULLS = 100.0  # of a sweep's force; a sensor on a foot that nothing drives feels 1e-4 of it
 
 
@@ -18,6 +24,7 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
     """What moves it, and what lies between that and the vibrissa."""
     yield from _hand(found)
     yield from _reach(found)
+    yield from _swing(found)
     if found.drive is None and found.objects:
         shown = ", ".join(map(repr, found.objects[:4]))
         yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
@@ -79,3 +86,18 @@ def _reach(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "foot", f"its actuator's forcerange of {reach.force:.3g} is less "
                      f"than the {FORCE:g} EI/L^2 of a sweep",
                      edits=(Edit("actuator", (("forcelimited", "false"),), own),))  # fmt: skip
+
+
+def _swing(found: MeasuredBeam) -> Iterator[Remark]:
+    """A heavy foot on a soft servo: what it swings by is in the readings of a sensor on it."""
+    reach, mass, period = found.reach, found.body_mass, found.period
+    if reach is None or not (reach.by_place and reach.gain and mass):
+        return
+    turns = math.sqrt(reach.gain / mass)  # rad, by time
+    swings = 2 * math.pi / turns
+    felt = mass * turns * SPEED * found.length / period
+    if swings > _SWINGS * period and felt > _FELT * FORCE * as_intended(found) / found.length**2:
+        enough = mass * (2 * math.pi / (_STIFF * period)) ** 2
+        yield Remark("fault", "foot", f"its position actuator holds a mass of {mass:.3g} softly, "
+                     f"with a period of {swings / period:.2g} T1: a force sensor on it feels it "
+                     "swing", f"make it lighter, or take kp={enough:.2g}")  # fmt: skip

@@ -79,7 +79,7 @@ class Inspection:
             "clamp",
             "rigid" if np.isinf(stiffness) else f"turns, by a spring of {stiffness:.3g} EI/L",
         )
-        yield "natural curvature", f"{found.natural_curvature * length:.3g}/L"
+        yield "natural curvature", f"{round(found.natural_curvature * length, 9) + 0.0:.3g}/L"
         twice = counted_twice(found)
         by_density = f"; of a mass by density {twice:.1%} is in two capsules at once"
         yield "mass", f"{found.mass:.4g}{by_density if twice > RIGIDITY else ''}"

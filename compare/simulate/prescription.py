@@ -21,8 +21,8 @@ from mujoco_models.export.whisker import Whisker
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
-REFERENCE = 80  # segments at rest: some 3e-4 rms off
-_SHARE = 0.8  # of the wanted error; the rest is the reference's own, and for what rounds the file
+REFERENCE, REFERENCE_OFF = 80, 3e-4  # segments at rest, and their rms
+_SHARE = 0.8  # of the wanted error; the rest is for what rounds the file
 # Segments, time step [T1] and contact stiffness [EI/L^3], from coarse to fine: as stiff as a sweep
 # at 0.1 L/T1 takes without chatter, and then harder, for slower ones.
 LADDER = (
@@ -45,7 +45,9 @@ _POINTS = 400, 4.0, 3200  # of the contour: at least, over the wanted error, and
 @dataclass(frozen=True)
 class Prescription:
     whisker: Whisker
-    error: float  # rms of the worst reading, relative to its largest magnitude
+    # Of the worst reading at most, relative to its largest magnitude: the rms from the reference,
+    # and the reference's own.
+    error: float
 
 
 def prescribe(
@@ -75,15 +77,20 @@ def prescribe(
         except DivergedError:
             off = math.inf
         advance()
-        if off <= _SHARE * error:
-            return Prescription(whisker, off)
+        if _least(off) <= error:
+            return Prescription(whisker, off + REFERENCE_OFF)
         found.append(off)
         if len(found) - int(np.argmin(found)) > _IN_VAIN:
             break
     raise InputError(
-        "--error", error, f"at least {min(found) / _SHARE:.1e} at {motion.speed:g} L/T1",
+        "--error", error, f"at least {_least(min(found)):.1e} at {motion.speed:g} L/T1",
         "ask for less, or a lower --speed; cables also slip off sideways, chains and rods do not",
     )  # fmt: skip
+
+
+def _least(off: float) -> float:
+    """The least error that may be asked for, of what is so far from the reference."""
+    return max(off / _SHARE, off + REFERENCE_OFF)
 
 
 def _error(reference: Readings, moved: Readings) -> float:

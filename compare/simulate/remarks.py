@@ -30,6 +30,9 @@ from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed, nearest_a
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _LENGTH = 0.005  # relative; forces go with 1/L^2
 _RADIUS = 2e-3  # L; the contour that the axis feels is the radius away
+_ASIDE = 0.01  # L; of a geom's axis
+# L, beyond the thickness; 0.025 moves readings by 0.4 per cent, 0.039 by 1.0: an object sinks in.
+_HOLE = 0.03
 _JOINT = (
     0.05  # relative; one of twenty that is off by that moves readings by a quarter of a per cent
 )
@@ -321,6 +324,7 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "contact", f"{len(through)} of {len(found.geoms)} geoms, s = "
                      f"{ends[0]:.2f} to {ends[1]:.2f} L, meet no object of MuJoCo's default "
                      f"contype and conaffinity: {shown}", edits=meeting_objects)  # fmt: skip
+    yield from _course(found)
     for pair in found.self_contacts[:3]:
         own = all(name in {geom.name for geom in found.geoms} for name in pair.split(" and "))
         yield Remark("fault", "contact", f"{pair} touch before anything moves",
@@ -364,6 +368,24 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     if said:
         yield Remark("fault", "contact", "; and ".join(said),
                      edits=(*steps, *treatment.touching(found, rubs)))  # fmt: skip
+
+
+def _course(found: MeasuredBeam) -> Iterator[Remark]:
+    """Whether what can touch is along all of it, and nowhere else."""
+    far, reached = max(found.geoms, key=lambda geom: geom.aside), found.joints[0].s
+    holes = []
+    if far.aside > _ASIDE * found.length:
+        yield Remark("fault", "contact", f"{far.name!r} stands out from the vibrissa by "
+                     f"{far.aside / found.length:.2g} L, and what touches it is no contact of that",
+                     edits=treatment.unseen(far))  # fmt: skip
+    for geom in sorted(found.geoms, key=lambda geom: geom.start):
+        if geom.start - reached - 2 * geom.radius > _HOLE * found.length:
+            holes.append(f"{reached / found.length:.2f} to {geom.start / found.length:.2f} L")
+        reached = max(reached, geom.end)
+    if holes:
+        more = f", nor at {len(holes) - 1} more places" if len(holes) > 1 else ""
+        yield Remark("fault", "contact", f"nothing can touch from s = {holes[0]}{more}: objects "
+                     "sink in there", "give each link a geom that collides all along")  # fmt: skip
 
 
 def _softness(geom: Geom, found: MeasuredBeam) -> str:

@@ -87,6 +87,11 @@ def contacts(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
     return (Edit(kind, tuple(attributes.items()), tuple(numbers)),)
 
 
+def unseen(geom: Geom) -> tuple[Edit, ...]:
+    """One that nothing is to touch."""
+    return (Edit("geom", (("contype", "0"), ("conaffinity", "0")), (geom.number,)),)
+
+
 def joints(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
     numbers = tuple(i for joint in found.joints for i in joint.numbers)
     return () if found.springs == "flex" else (Edit("joint", tuple(attributes.items()), numbers),)

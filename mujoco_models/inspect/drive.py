@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -120,14 +121,20 @@ def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
     mover = mover_of(model, foot, left)
     if mover is None:
         return None
-    joint = None if mover.joint is None else model.joint(mover.joint).name
+    joint = None if mover.joint is None else name_of(model.joint(mover.joint), "joint")
     if mover.mocap is not None:
-        hand = f"mocap body {model.body(mover.mocap).name!r}"
+        hand = f"mocap body {name_of(model.body(mover.mocap), 'body')!r}"
         return hand if joint is None else f"free joint {joint!r} on {hand}, by a weld"
     if mover.actuator is None:
         return f"slide {joint!r} without an actuator"
     how = "" if model.actuator_biastype[mover.actuator] == _FOLLOWS else ", which is a force"
-    return f"slide {joint!r} with actuator {model.actuator(mover.actuator).name!r}{how}"
+    actuator = name_of(model.actuator(mover.actuator), "actuator")
+    return f"slide {joint!r} with actuator {actuator!r}{how}"
+
+
+def name_of(one: Any, kind: str) -> str:  # noqa: ANN401  # a view of MuJoCo's of some kind
+    """Its own, or as ``"joint 3"``."""
+    return one.name or f"{kind} {one.id}"
 
 
 def movable(model: mujoco.MjModel, mine: set[int]) -> tuple[str, ...]:

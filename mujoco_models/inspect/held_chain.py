@@ -16,6 +16,7 @@ _ITERATIONS = 100
 _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
 _NONE = np.zeros(0, int)
+_BARE = 0.75  # of a link: a first piece without a geom, as half of a cell is
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 # All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
 _STAGES = (
@@ -43,15 +44,24 @@ class HeldChain(HeldModel):
     def set_back(self) -> None:
         """And find the tip again."""
         super().set_back()
-        # The end of the last geom that is farther from the last joint.
-        ends = self._world(axis_of(self.model, self.parts.geoms[-1]), self._body(-1))
+        # What is farthest from the last joint; the last of its geoms may be a ball on it.
+        ends = self._ends(self.parts.geoms[-1])
         joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
         far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
         from_body = far - self.data.xpos[self._tip_body]
         self.tip_in_body = self.axes_of(self._tip_body).T @ from_body
 
+    def _ends(self, geom: int) -> Floats:
+        """Of the axes of a geom and of all that are fixed to it."""
+        owners = self.model.geom_bodyid[list(self.parts.geoms)]
+        mine = self.model.body_weldid[owners] == self.model.body_weldid[self._body(geom)]
+        return np.concatenate([
+            self._world(axis_of(self.model, one), self._body(one))
+            for one in np.array(self.parts.geoms)[mine].tolist()
+        ])  # fmt: skip
+
     def _body(self, geom: int) -> int:
-        return int(self.model.geom_bodyid[self.parts.geoms[geom]])
+        return int(self.model.geom_bodyid[geom])
 
     def _world(self, points: Floats, body: int) -> Floats:
         return np.asarray(self.data.xpos[body] + points @ self.axes_of(body).T)
@@ -74,13 +84,21 @@ class HeldChain(HeldModel):
 
     @property
     def clamp(self) -> Floats:
-        """Where the vibrissa begins: the end of its first geom that is farther from the tip.
+        """Where the vibrissa begins: the end of its first geoms that is farthest from the tip.
 
-        Of a plugin's chain, whose first cell nothing makes bend, in it if the sensor is there.
+        Of a plugin's chain, whose first cell nothing makes bend, in it if the sensor is there; and
+        at a sensor behind the first hinge, if the piece between them has no geom.
         """
-        ends = self._world(axis_of(self.model, self.parts.geoms[0]), self._body(0))
-        near, far = ends[np.argsort(np.linalg.norm(ends - self.tip, axis=1))]
-        return self.begin(far, near) if self.parts.plugin else np.asarray(far)
+        ends = self._ends(self.parts.geoms[0])
+        near, far = ends[np.argsort(np.linalg.norm(ends - self.tip, axis=1))][[0, -1]]
+        if self.parts.plugin:
+            return self.begin(far, near)
+        if self.model.body_weldid[self._body(self.parts.geoms[0])] != self.parts.chain[0]:
+            return np.asarray(far)
+        first, second = self.joints[:2]
+        behind = far - _BARE * (second - first)
+        found = self.begin(behind, far)
+        return np.asarray(far) if np.array_equal(found, behind) else found
 
     @property
     def joints(self) -> Floats:

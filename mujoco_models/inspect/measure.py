@@ -21,6 +21,7 @@ from mujoco_models.inspect.drive import (
     holders,
     joints_of,
     movable,
+    name_of,
     reach_of,
     slides,
 )
@@ -97,7 +98,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     mass = float(model.body_mass[list(parts.chain)].sum())
     return MeasuredBeam(
         model=_model_name(model),
-        foot=model.body(parts.foot).name,
+        foot=name_of(model.body(parts.foot), "body"),
         body=parts.foot,
         body_mass=float(model.body_mass[parts.foot]),
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
@@ -109,7 +110,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
         joints=joints,
-        geoms=touching(model, parts, held.data, (nodes[0], axes), probe),
+        geoms=touching(model, parts, held.data, (nodes, axes), probe),
         tip_rigidity=tip_rigidity,
         stretch=bending.stretch,
         loads=loads,
@@ -315,7 +316,7 @@ def _seen(
     skew = np.zeros((3, 3)) if is_force else np.linalg.pinv(turned) @ by_force
     seen = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
     place, _ = held.site(sensor)
-    name = held.model.sensor(sensor).name
+    name = name_of(held.model.sensor(sensor), "sensor")
     offset = axes @ (place - held.clamp)
     lever = offset if is_force else arm - seen
     cutoff = held.cutoffs[sensor] or np.inf

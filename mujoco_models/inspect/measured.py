@@ -69,6 +69,7 @@ class Geom:
     number: int  # in the model; of a flex's edge, the flex
     start: float  # arc lengths of its axis [length]
     end: float  # arc lengths of its axis [length]
+    aside: float  # how far an end of its axis is from the vibrissa's [length]
     radius: float  # [length]
     size: tuple[float, ...]  # MuJoCo's of a sphere, capsule or cylinder; of others empty
     rounded: bool  # whether its ends are round, and reach beyond its axis: a capsule

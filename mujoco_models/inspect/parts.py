@@ -91,6 +91,8 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     geoms = asked if asked is not None else _along(model, holders[0], chain)
     if not geoms and rod is None:
         raise InputError("model", "without geoms on the vibrissa", "one that can touch", "add some")
+    if rod is None:
+        _check_ends(model, chain, model.body_weldid[model.geom_bodyid[geoms]].tolist())
     bodies = {*holders, *chain}
     if rod is not None:
         bodies |= {*holders_of(model, holders[-1])}
@@ -104,6 +106,17 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     )
     plugin = bool(_plugins(model)[chain[0]])
     return Parts(holders[-1], chain, tuple(geoms), force, torque, rod, plugin)
+
+
+def _check_ends(model: mujoco.MjModel, chain: Chain, bodies: list[int]) -> None:
+    """Raise InputError where the first or the last link has none of the geoms."""
+    for link, end in ((chain[0], bodies[0]), (chain[-1], bodies[-1])):
+        if end != link and (link != chain[0] or end in chain):
+            raise InputError(
+                f"body {model.body(link).name!r} of the vibrissa", "without a geom",
+                "one with a geom: the first and the last are where it begins and ends",
+                "add one, without mass if need be, or name its own in --geoms",
+            )  # fmt: skip
 
 
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
@@ -202,8 +215,9 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
     found = [geom for body in chain for geom in _touchable(model, body)]
     if not found:
         return []
-    start, end = axis_of(model, found[0])
-    way = end - start
+    # The first of them may be a ball on its joint.
+    ways = np.array([np.diff(axis_of(model, geom), axis=0)[0] for geom in found])
+    way = next((way for way in ways if way.any()), np.zeros(3))
     length = float(np.linalg.norm(way))
     if length == 0:
         return found

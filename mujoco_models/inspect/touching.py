@@ -20,7 +20,7 @@ def touching(
     frame: tuple[Floats, Floats],
     probe: Probe | None,
 ) -> tuple[Geom, ...]:
-    """All that can touch, from the clamp to the tip."""
+    """All that can touch, from the clamp to the tip, by its nodes and the axes of the sweep."""
     return tuple(
         _geom(model, piece, frame, probe)
         for piece in (
@@ -69,7 +69,7 @@ def _edges(model: mujoco.MjModel, rod: Rod, data: mujoco.MjData) -> Iterator[_Pi
 def _geom(
     model: mujoco.MjModel, piece: _Piece, frame: tuple[Floats, Floats], probe: Probe | None
 ) -> Geom:
-    (clamp, axes), weight = frame, piece.weight
+    (nodes, axes), weight = frame, piece.weight
 
     def stated(field: str) -> Any:  # noqa: ANN401  # whatever MuJoCo's field holds
         return getattr(model, f"{piece.kind}_{field}")[piece.number]
@@ -78,7 +78,8 @@ def _geom(
         geom = piece.number if piece.kind == "geom" else -1
         middle = piece.ends.mean(axis=0)
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
-    start, end = sorted(((piece.ends - clamp) @ axes[1]).tolist())
+    places, aside = _along(nodes, piece.ends)
+    start, end = sorted(places.tolist())
     stiffness, time_constant, decay = _pushes(model, stated("solref"), stated("solimp"), weight)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
@@ -87,6 +88,7 @@ def _geom(
         number=piece.number,
         start=start,
         end=end,
+        aside=float(aside.max()),
         radius=piece.radius,
         size=size_of(model, piece.number) if piece.kind == "geom" else (),
         rounded=piece.kind == "geom" and stated("type") == mujoco.mjtGeom.mjGEOM_CAPSULE,
@@ -98,6 +100,21 @@ def _geom(
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
     )
+
+
+def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """Arc lengths of what of the vibrissa is nearest to points, and how far it is from them."""
+    ways = np.diff(nodes, axis=0)
+    lengths = np.linalg.norm(ways, axis=1)
+    some = lengths > 0  # the clamp may be at the first hinge
+    ways, lengths, starts = ways[some], lengths[some], nodes[:-1][some]
+    least, most = np.zeros(len(lengths)), lengths.copy()
+    least[0], most[-1] = -np.inf, np.inf
+    units = ways / lengths[:, None]
+    on = np.clip(np.einsum("pij,ij->pi", points[:, None] - starts, units), least, most)
+    off = np.linalg.norm(points[:, None] - starts - on[..., None] * units, axis=-1)
+    best = (np.arange(len(points)), np.argmin(off, axis=1))
+    return np.asarray((np.cumsum(lengths) - lengths + on)[best]), np.asarray(off[best])
 
 
 def _pushes(

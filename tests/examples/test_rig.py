@@ -120,7 +120,13 @@ def flawed(folder, old, new, name="rig.toml"):
     [
         ('column = "stage", unit = "mm"', 'column = "stage"', "without a unit"),
         ('length = "50 mm"', "length = 50", r"with units all four and \[beam\]|without a unit"),
-        ('unit = "mN mm"', 'unit = "mm"', "a unit of N m"),
+        ('unit = "mN mm"', 'unit = "mm"', r"columns\.moment_z\.unit = 'mm': must be a unit of N m"),
+        ('"Fx", unit = "mN"', '"Fx", unit = "g"', r"line \d+: columns\.force_x\.unit .* gf$"),
+        (
+            "[passes]",
+            'time = { column = "Fx", unit = "mm" }\n[passes]',
+            r"columns\.time\.unit .* unit of s",
+        ),
         ('column = "Fx"', 'column = "F_x"', "column 'F_x' of .*missing"),
         ("gain = 1.02", "gain = 0", "gain"),
         ("gain = 1.02", "gain = 1e200", r"force_x of the pass .*less than 1e\+40"),

@@ -299,6 +299,15 @@ def _raised(case: Case, rng: np.random.Generator) -> Readings:
     )
 
 
+def _sized(case: Case, rng: np.random.Generator) -> Readings:
+    """An object of the same shape, larger or smaller about its lowest point, which is at x = 0."""
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    by, lowest = _between(rng, 0.05, 0.2), float(case.outline(1000)[1].min())
+    there = case.profile.scaled(1 + by).raised(-by * lowest)
+    sweep = replace(case.sweep, start=start + 0.2, stop=stop)
+    return solve_sweep(replace(case, profile=there, sweep=sweep))
+
+
 def _ended(sweep: Readings, rng: np.random.Generator) -> Readings:
     """The vibrissa lets go well before it should."""
     table = sweep.table.copy()
@@ -417,6 +426,7 @@ MISTAKES: dict[str, Mistake] = {
     "jitter of the foot": Mistake("jitter", sensed=_jittering),
     "scale of the stage": Mistake("scale of the stage", sensed=_on("foot_x", _gain(0.01, 0.04))),
     "object raised": Mistake("height of the object", _raised),
+    "object size": Mistake("size of the object", _sized),
     "contact ends early": Mistake("ends early", recorded=_ended),
     "whole first cell": Mistake("half a cell", _whole_first_cell),
     "rigid first half cell": Mistake("rigid over its first", _rigid_first_half),
@@ -478,6 +488,7 @@ def confusion(seeds: Iterable[int]) -> pd.DataFrame:
                 right += 1
             else:
                 wrong[f"{seed}: {said[:60]}"] += 1
+        print(f"{kind}: {right} right, {silent} silent", file=sys.stderr, flush=True)
         rows.append((kind, right, silent, wrong.total(), "; ".join(wrong)))
     return pd.DataFrame(rows, columns=["mistake", "right", "silent", "wrong", "as"])
 

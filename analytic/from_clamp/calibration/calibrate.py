@@ -9,7 +9,7 @@ import numpy as np
 from analytic.from_clamp.calibration.fit import LeastSquaresFit, VibrissaFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
-from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.calibration.unknowns import LAG, OFFSET, UNKNOWNS, Sought, checked_unknowns
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -247,9 +247,12 @@ def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, E
     jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * freedom else None
     if jittered is not None:
         fit = fit.of(jittered)
+    first = numbers
     numbers, known, relief = _knowing_the_noise(
         fit, numbers, 1.0 if stated and not jittered else 0.0
     )
+    if relief and jittered is not None:
+        cost = float(np.sum(fit.misses(first) ** 2))  # over that noise of which the relief is
     return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / freedom)), known
 
 
@@ -274,7 +277,9 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
             untouched = f"at {every - touching} of which the best fit does not touch"
             what = f"loaded at {every} stations, {untouched}"
             allowed = "of the case's vibrissa and object, but for the unknowns"
-            remedy = "check foot_x, units and object, or fit offset too"
+            remedy = "check foot_x, units and object"
+            if all(kind.name != OFFSET for kind in fit.kinds):
+                remedy += ", or fit offset too"
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
@@ -285,11 +290,7 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
 
 def _best(fit: LeastSquaresFit) -> tuple[Floats, float]:
     """The best numbers from the case's own, or from elsewhere if those leave too much."""
-    starts = [fit.start]
-    for i, kind in enumerate(fit.kinds):
-        this = np.arange(len(fit.start)) == i
-        starts += [np.where(this, number, fit.start) for number in kind.starts]
-    costs = []
+    starts, costs = fit.starts(), []
     for i, start in enumerate(starts):
         starts[i] = fit.scaled_rigidity(_inside(fit, start))
         costs.append(float(np.sum(fit.misses(starts[i]) ** 2)))

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import Number, Sought, Unknown
+from analytic.from_clamp.calibration.unknowns import OFFSET, Number, Sought, Unknown
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
@@ -21,6 +21,8 @@ _STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matte
 _SETTLED = 1e-8  # relative, of the sum of squares and of the numbers: far below any noise
 _AN_END = 1e-9  # a fit that stays inside comes so near to an end that is best
 _MOST_SWEEPS = 40  # of a fit, without those for derivatives
+_OFFSETS = 400  # that are tried, over twice the travel: 0.01 L
+_LOOKED_AT = 200  # stations to either side
 _SOLVED = 200  # stations over the root of the noise: lines between them err by 10^-3 of it
 
 
@@ -56,6 +58,16 @@ class LeastSquaresFit(ABC):
     @abstractmethod
     def sought(self, numbers: Floats) -> Sought:
         """What these numbers make of the case."""
+
+    def starts(self) -> list[Floats]:
+        """From where the best numbers are sought: the case's own, and others, one by one."""
+        this = np.eye(len(self.start), dtype=bool)
+        others = (
+            np.where(this[i], number, self.start)
+            for i, kind in enumerate(self.kinds)
+            for number in kind.starts
+        )
+        return [self.start, *others]
 
     def of(self, measured: Measured) -> Self:
         """The same of other readings."""
@@ -181,6 +193,41 @@ class VibrissaFit(LeastSquaresFit):
     def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
         super().__init__(measured, given, kinds)
         self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
+
+    def starts(self) -> list[Floats]:
+        """And the case's own at the offset at which its readings are most like those measured."""
+        named, found = [kind.name for kind in self.kinds], super().starts()
+        if OFFSET in named:
+            found.append(self.start.copy())
+            found[-1][named.index(OFFSET)] = self._offset()
+        return found
+
+    def _offset(self) -> float:
+        """At which sweeps of the case as it was given, of whatever rigidity, look alike [L]."""
+        x, measured = self.measured.foot_x, self.measured.readings
+        measured = measured / np.abs(measured).max(axis=1, keepdims=True)
+        swept = []
+        for sweep, (here, _) in self._sweeps.items():
+            case = replace(self.given, sweep=sweep)
+            readings = np.nan_to_num(expected_readings(case, case.foot_x).readings)
+            order = np.argsort(case.foot_x)
+            swept.append(
+                (here[:: len(here) // _LOOKED_AT + 1], case.foot_x[order], readings[:, order])
+            )
+        sizes = np.max([np.abs(readings).max(axis=1) for *_, readings in swept], axis=0)
+        ends = np.concatenate([foot[[0, -1]] for _, foot, _ in swept])
+
+        def alike(offset: float) -> float:
+            products, squares = 0.0, np.finfo(float).tiny
+            for seen, foot, readings in swept:
+                for row, size, read in zip(readings, sizes, measured, strict=True):
+                    there = np.interp(x[seen] - offset, foot, row, 0.0, 0.0) / size
+                    products += float(there @ read[seen])
+                    squares += float(there @ there)
+            return float(products / np.sqrt(squares))
+
+        tried = np.linspace(x.min() - ends.max(), x.max() - ends.min(), _OFFSETS)
+        return float(max(tried.tolist(), key=alike) / self.given.beam.length)
 
     def sought(self, numbers: Floats) -> Sought:
         """The vibrissa with these numbers."""

@@ -113,7 +113,10 @@ def measured_under_load(
     force = np.hypot(
         readings.values("force_x") + carried[0], readings.values("force_y") + carried[1]
     )
-    loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*spread[1:3])))
+    # What remembers, and hum, show where a rig's pass is free, but not from row to row.
+    free = readings.provenance.get("free_noise", {})
+    noise = np.maximum(spread[1:3], [free.get(name, 0.0) for name in CLAMP_READINGS[:2]])
+    loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*noise)))
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded
     if len(order) < fewest:

@@ -1,5 +1,6 @@
 """What of a vibrissa, its clamp and its sweep a calibration can find."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,11 +14,11 @@ _SOFTEST = 20.0  # L/EI; a clamp so soft holds nothing
 _MOST_BENT = 1.5  # 1/L, at rest
 _MOST_RIGID = 100.0  # times what the readings' magnitudes suggest
 _MOST_LEANT = 0.5  # rad
-_FARTHEST = 0.3  # L
 _LONGEST_LAG = 0.1  # L
 
 LAG = "lag"
-OF_THE_FOOT = ("offset", LAG)
+OFFSET = "offset"
+OF_THE_FOOT = (OFFSET, LAG)
 """Unknowns that are none of the case but of its foot position."""
 
 
@@ -125,8 +126,8 @@ UNKNOWNS: dict[str, Unknown] = {
     "friction": Unknown(
         "friction", 0.0, 1.0, (0.1, 0.4), unit=lambda given: 1.0, possible=(True, False)
     ),
-    "offset": Unknown(
-        "offset", -_FARTHEST, _FARTHEST, (-0.05, 0.05), unit=lambda given: given.beam.length
+    OFFSET: Unknown(  # a stage counts from anywhere
+        OFFSET, -math.inf, math.inf, (-0.05, 0.05), unit=lambda given: given.beam.length
     ),
     LAG: Unknown(LAG, -_LONGEST_LAG, _LONGEST_LAG, unit=lambda given: given.beam.length),
 }

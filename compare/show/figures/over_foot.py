@@ -20,6 +20,7 @@ from compare.show.numbers import Kind, quantity
 LINE: dict[str, Any] = {"color": style.REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
 _DOTS = {"color": style.CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
+_IN_KEY = 2.0  # times as large is a dot there, where it is alone
 _MANY = 2000  # dots are pixels, behind a line through them
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 # Of the curve between the last stations before a snap-off:
@@ -121,7 +122,8 @@ def key_below(figure: Figure, meant: Axes | Sequence[Artist], columns: int) -> N
     handles = meant.get_legend_handles_labels()[0] if isinstance(meant, Axes) else meant
     outside = "outside " if figure.get_layout_engine() else ""
     place: Any = f"{outside}lower center"
-    figure.legend(handles=handles, loc=place, ncols=columns, fontsize=style.SMALL, frameon=False)
+    look: Any = {"fontsize": style.SMALL, "frameon": False, "markerscale": _IN_KEY}
+    figure.legend(handles=handles, loc=place, ncols=columns, **look)
 
 
 def phase_handles(*phases: str, **look: Any) -> list[Artist]:  # noqa: ANN401  # matplotlib's

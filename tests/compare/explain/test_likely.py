@@ -8,7 +8,17 @@ import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analytic import CLAMP_READINGS, SENSED, Case, Readings, named_case, parabola, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    SENSED,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    parabola,
+    solve_sweep,
+)
 from compare import Tolerances, compare
 from compare.align.offset import without_offset
 from compare.explain.causes import physical_faults, sensor_faults, slopes
@@ -133,6 +143,33 @@ def thinner(sweep: Readings) -> Readings:
     """A vibrissa of no thickness, which claims to be the other."""
     case = Case(BEAM, named_case("parabola").profile.scaled(BEAM.length), STATIONS)
     return replace(solve_sweep(replace(case, beam=replace(BEAM, radius=0.0))), beam=BEAM)
+
+
+def past(profile, start: float = 1.3, **changed) -> Readings:
+    """The sweep of the circle below past another object, over nearly its stations."""
+    case = Case(profile=profile, sweep=Sweep(100, start=start, stop=-1.445), **changed)
+    return solve_sweep(case)
+
+
+@pytest.mark.parametrize(
+    ("profile", "said"),
+    [
+        (circle(1.05, (0, 0.4)), r"^size of the object \+5.0.% off"),
+        (circle(0.9, (0, 0.4)), r"^size of the object -(9.[5-9]|10.[0-5]).% off"),
+        (circle(1.05, (0, 0.35)), r"radius .* \+5.00e-02 .*object larger all round by as much$"),
+        (circle(0.95, (0, 0.45)), r"radius .* -5.00e-02 .*object larger all round by as much$"),
+    ],
+)
+def test_another_size_is_not_taken_for_an_object_that_is_nearer(profile, said):
+    found = compare(past(circle(1.0, (0, 0.4)), 0.932), past(profile)).likely
+    assert re.search(said, str(found))
+
+
+@pytest.mark.slow
+def test_a_weight_that_was_forgotten_is_named():
+    heavy = past(circle(1.0, (0, 0.4)), 0.932, weight=(0.0, -0.5))
+    light = past(circle(1.0, (0, 0.4)), 0.932)
+    assert compare(heavy, light).likely.startswith("weight of the vibrissa -100% off")
 
 
 @pytest.mark.parametrize(

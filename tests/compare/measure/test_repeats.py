@@ -6,23 +6,40 @@ import pytest
 from analytic import CLAMP_READINGS, SENSED, Readings
 from compare import compare
 from compare.measure.repeats import repeats
+from compare.show.passes import repeats_summary
 from tests.conftest import exact_sweep
+
+
+def passes(name, noise, rng):
+    exact = exact_sweep(name)
+    for _ in range(6):
+        table = exact.table[list(SENSED)].fillna(0.0)
+        for reading in CLAMP_READINGS:
+            largest = table[reading].abs().max()
+            table[reading] += noise * largest * rng.standard_normal(len(table))
+        yield Readings(table, exact.beam)
 
 
 @pytest.mark.parametrize("name", ["catenary", "parabola"])
 @pytest.mark.parametrize("noise", [1e-6, 1e-2])
 def test_passes_alike_are_not_displaced_and_their_mean_is_the_sweep(name, noise):
     """Four stations are averaged, over bends and next to the snap-off: neither may show."""
-    exact, rng, passes = exact_sweep(name), np.random.default_rng(1), []
-    for _ in range(6):
-        table = exact.table[list(SENSED)].fillna(0.0)
-        for reading in CLAMP_READINGS:
-            largest = table[reading].abs().max()
-            table[reading] += noise * largest * rng.standard_normal(len(table))
-        passes.append(Readings(table, exact.beam))
-    found = repeats(passes)
+    exact, rng = exact_sweep(name), np.random.default_rng(1)
+    found = repeats([*passes(name, noise, rng)])
     shifts = found.shifts.numbers.ravel()
     assert abs(shifts.mean()) < 0.1 * noise
     assert (np.abs(shifts) < 4 * found.uncertainty).all()
+    assert found.left_out < 0.05
     compared = compare(exact, found.mean, noise="auto")
     assert compared.agrees, compared
+
+
+def test_a_pass_that_is_unlike_the_others_is_named():
+    """A sensor that saturates in noise: what is left of the mean agrees, and that is not all."""
+    several = [*passes("catenary", 3e-3, np.random.default_rng(2))]
+    table = several[4].table
+    table["moment_z"] = np.minimum(table["moment_z"], 0.6 * table["moment_z"].max())
+    found = repeats(several)
+    assert (found.farthest, found.left_out > 0.05) == (4, True)
+    said = " ".join(str(getattr(one, "said", "")) for one in repeats_summary(found))
+    assert f"most of all {found.names[4]}: left out of their mean" in said

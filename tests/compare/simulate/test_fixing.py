@@ -1,5 +1,7 @@
 """What `inspect --write` makes of models that are written badly."""
 
+import re
+
 import pytest
 
 from analytic import find_events, solve_sweep
@@ -88,6 +90,22 @@ def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
     assert len(after.files) == 1
 
 
+def test_a_step_is_a_fiftieth_of_the_first_period_or_less(tmp_path):
+    _, after = fixed(on_rail(tmp_path, ('timestep="0.01"', 'timestep="18"')))
+    found = after.inspection.found
+    assert 1 / 500 < found.timestep / found.period < 1 / 49
+
+
+def test_a_sensor_goes_to_where_the_vibrissa_begins(tmp_path):
+    """Which is at the first hinge, that nothing is ahead of, and not where its body is."""
+    path = on_rail(tmp_path, site='pos="0 -0.1 0"')
+    path.write_text(re.sub('<geom name="whisker-geom0"[^>]*>', "", path.read_text()))
+    before, after = fixed(path)
+    assert "torque sensor" in faults_in(before)
+    assert after.inspection.sound, after.inspection.faults
+    assert after.inspection.found.torque.clamp == pytest.approx([0, 0.025, 0], abs=1e-9)
+
+
 def test_what_can_leave_its_plane_is_swept_until_it_would(tmp_path):
     """Farther on chains of balls slip off sideways, in most turns of the world: 20 % rms."""
     path = Chain().write(tmp_path)
@@ -141,6 +159,15 @@ def test_a_spring_on_a_slide_is_taken_off_where_it_is_felt(tmp_path, drive, soun
     before, after = fixed(path)
     assert faults_in(before) == (set() if sound else {"foot"})
     assert after.inspection.sound
+
+
+@pytest.mark.parametrize(("stiffness", "said"), [("100", {"foot"}), ("1e5", set())])
+def test_a_heavy_foot_on_a_soft_servo_is_in_the_readings(tmp_path, stiffness, said):
+    """Swept, force_x of a whisker of 60 mm on a foot of 0.1 kg was 78 % off, and 0.7 % at 1e5."""
+    heavy = (WEIGHT, WEIGHT.replace('mass="1e-3"', 'mass="1"'))
+    drive = f'<actuator><position joint="rail" kp="{stiffness}"/></actuator></mujoco>'
+    path = on_rail(tmp_path, heavy, (MOTOR, drive), (' armature="1e5"', ""))
+    assert faults_in(Inspection(inspect_model(path))) == said
 
 
 def test_a_drive_that_reaches_as_far_as_a_sweep_is_no_fault(tmp_path):

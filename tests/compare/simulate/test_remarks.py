@@ -143,6 +143,32 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path):
     assert found.sound
 
 
+BALL = '<geom name="ball" type="sphere" size="0.005"/>'
+TENTH, LAST, FIRST = (f'<geom name="whisker-geom{i}" ' for i in (10, 20, 1))
+UNSEEN = 'contype="0" conaffinity="0" '
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ((TENTH, f"{BALL}{TENTH}{UNSEEN}"), "nothing can touch from s = 0.4"),
+        ((TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}'), "'arm' stands out from the"),
+        ((TENTH, f"{BALL}{TENTH}"), None),
+    ],
+)
+def test_what_touches_is_along_all_of_it(tmp_path, change, said):
+    """A link whose capsule is only seen, beside a ball that collides, is a hole."""
+    found = changed(tmp_path, Chain(), change)
+    assert [said in str(fault) for fault in found.faults] == ([True] if said else [])
+    assert found.found.length == pytest.approx(1.0)
+
+
+def test_what_stands_out_is_not_to_be_touched(tmp_path):
+    arm = (TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}')
+    before = changed(tmp_path, Chain(), arm)
+    assert fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection.sound
+
+
 def test_a_medium_is_noted(tmp_path):
     found = changed(tmp_path, Chain(), ('integrator="', 'density="1000" integrator="'))
     assert [remark.subject for remark in found.remarks].count("medium") == 1
@@ -158,12 +184,24 @@ def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
     curved = Chain(curvature=0.3)
     assert faults(tmp_path, curved, Beam(natural_curvature=0.3)) == []
     assert faults(tmp_path, curved, Beam(natural_curvature=-0.3)) != []
+    chords = Chain(curvature=0.3, first="end")  # its first and its last piece are straight
+    found = Inspection(inspect_model(chords.write(tmp_path)), Beam(natural_curvature=0.3))
+    assert "natural curvature" not in faults_in(found)
+
+
+def test_links_that_are_too_hard_to_turn_are_named(tmp_path):
+    path = Chain().write(tmp_path)
+    hard = '<inertial pos="0 0.02 0" mass="0.0157" diaginertia="0.1 0.1 0.1"/><joint axis'
+    path.write_text(path.read_text().replace("<joint axis", hard))
+    (said,) = (r.text for r in Inspection(inspect_model(path)).faults if r.subject == "inertia")
+    assert "far too hard to turn" in said
 
 
 @pytest.mark.parametrize(
     ("chain", "stiffness"),
     [
         (Chain(), np.inf),
+        (Chain(first="start", length=2.0), 40.0),  # whatever the length
         (Chain(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
         (Chain(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
         (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),
@@ -267,6 +305,15 @@ def test_a_contact_that_is_too_soft_and_too_hard_has_one_prescription(tmp_path):
     last = next(s for s in reversed([*asked, *map(str, after.followed)]) if "solref" in s)
     assert all(attribute in text for attribute in last.replace('" ', '"\n').splitlines())
     assert text.count("solref=") == text.count(last.split(" solimp")[0])
+
+
+@pytest.mark.parametrize(("links", "steps", "chatters"), [(20, 2000, True), (12, 9000, False)])
+def test_explicit_steps_take_contacts_by_the_square_of_the_links(tmp_path, links, steps, chatters):
+    """0.1/N^2 EI/L^3 times the step squared: 1e4 EI/L^3 take steps of T1/6600 with 20."""
+    found = inspect_model(Chain(links=links).write(tmp_path))
+    stepped = replace(found, integrator="euler", timestep=found.period / steps)
+    said = " ".join(map(str, Inspection(stepped).faults))
+    assert ("too hard for euler" in said) is chatters
 
 
 def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):

@@ -1,5 +1,7 @@
 """What is measured of models as people write them, and what is planted in them."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -112,7 +114,7 @@ def test_a_free_foot_on_a_hand_is_driven_by_the_hand(tmp_path):
     path = held.write(tmp_path)
     weld = '<equality><weld body1="hand" body2="whisker-foot"/></equality></mujoco>'
     path.write_text(path.read_text().replace("</mujoco>", weld))
-    assert inspect_model(path).drive == "free joint '' on mocap body 'hand', by a weld"
+    assert inspect_model(path).drive == "free joint 'joint 0' on mocap body 'hand', by a weld"
 
 
 def test_a_last_link_may_be_thicker_than_it_is_long(tmp_path):
@@ -323,13 +325,81 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
     ],
 )
 def test_it_begins_with_what_goes_on_as_it_does_and_is_as_thick(tmp_path, shape, begins):
-    """A box of links does, a housing about its axis does not."""
-    path = Chain().write(tmp_path)
+    """A box of links does, a housing about its axis does not, without a sensor there."""
+    path = Chain(sensors="").write(tmp_path)
     own = '<geom name="whisker-geom0" fromto="0 0 0 0 0.025 0"/>'
     assert own in path.read_text()
     turned = 'quat="1 1 0 0"' if "cylinder" in shape else ""
     path.write_text(path.read_text().replace(own, f"<geom {turned} {shape}/>"))
     assert inspect_model(path).length == pytest.approx(1 - begins)
+
+
+@pytest.mark.parametrize("link", [1, 20])
+@pytest.mark.parametrize("behind", [False, True])
+def test_a_ball_on_a_joint_is_neither_where_it_begins_nor_where_it_ends(tmp_path, link, behind):
+    path, ball = Chain().write(tmp_path), '<geom type="sphere" size="0.005"/>'
+    text = path.read_text()
+    (own,) = re.findall(f'<geom name="whisker-geom{link}" [^>]*>', text)
+    path.write_text(text.replace(own, own + ball if behind else ball + own))
+    found = inspect_model(path)
+    assert found.length == pytest.approx(1.0)
+    assert found.joints[0].s == pytest.approx(1 / 40)
+
+
+@pytest.mark.parametrize(("behind", "begins"), [(0.0, 0.0), (0.01, 0.01), (-0.05, 0.025)])
+def test_a_first_piece_without_a_geom_begins_at_the_sensor(tmp_path, behind, begins):
+    """Half a cell before the hinge; what is farther behind is a bracket."""
+    path = Chain(site=f'pos="0 {behind} 0"').write(tmp_path)
+    path.write_text(re.sub('<geom name="whisker-geom0"[^>]*>', "", path.read_text()))
+    found = inspect_model(path)
+    assert found.length == pytest.approx(1 - begins)
+    assert found.joints[0].s == pytest.approx(0.025 - begins, abs=1e-12)
+
+
+def test_what_the_solver_leaves_undone_is_counted_in_periods(tmp_path):
+    """In a unit of time of half a period it is 16 times as much of the vibrissa's energy."""
+    slow, fast = (measured(tmp_path, Chain(rigidity=k)) for k in (1.0, 4.0))
+    assert fast.period == pytest.approx(slow.period / 2)
+    assert fast.undone == pytest.approx(slow.undone / 16)
+
+
+def test_runge_and_kutta_take_longer_steps_than_euler_without_dampers(tmp_path):
+    """2.78 over the highest frequency, for 2."""
+    path = Chain().write(tmp_path)
+    text = re.sub(' damping="[^"]*"', "", path.read_text())
+    steps = []
+    for integrator in ("Euler", "RK4"):
+        path.write_text(text.replace('integrator="discrete"', f'integrator="{integrator}"'))
+        steps.append(inspect_model(path).stable_step)
+    assert steps[1] / steps[0] == pytest.approx(2.78 / 2)
+
+
+def test_what_has_no_name_has_a_number(tmp_path):
+    path = Chain(foot="", inside_foot='<joint type="slide" axis="1 0 0"/>').write(tmp_path)
+    path.write_text(path.read_text().replace('name="F" ', "").replace('name="whisker-foot"', ""))
+    found = inspect_model(path)
+    assert found.force.name == "sensor 0"
+    assert found.foot == "body 1"
+    assert found.drive == "slide 'joint 0' without an actuator"
+
+
+def test_a_link_at_an_end_without_a_geom_is_named(tmp_path):
+    """Its end is not known: it was taken for that of the link before, which it turns back to."""
+    path = Chain().write(tmp_path)
+    body = '<inertial pos="0 0 0" mass="0.01" diaginertia="1e-6 1e-6 1e-6"/>'
+    path.write_text(re.sub('<geom name="whisker-geom20" [^>]*>', body, path.read_text()))
+    with pytest.raises(InputError, match="'whisker20' of the vibrissa = without a geom"):
+        inspect_model(path)
+    with pytest.raises(InputError, match="'whisker1' of the vibrissa = without a geom"):
+        measured(tmp_path, geoms="whisker-geom2?,whisker-geom?5,whisker-geom20")
+
+
+def test_places_are_arc_lengths_of_a_curved_one_too(tmp_path):
+    """On a straight line from the clamp its tip would be at 0.96 L."""
+    found = measured(tmp_path, Chain(curvature=0.5))
+    assert found.geoms[-1].end == pytest.approx(found.length)
+    assert [g.start for g in found.geoms[1:]] == pytest.approx([j.s for j in found.joints])
+    assert max(geom.aside for geom in found.geoms) < 1e-9
 
 
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):

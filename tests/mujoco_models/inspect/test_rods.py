@@ -35,7 +35,7 @@ def test_a_sound_rod_is_the_beam_that_it_stands_for(tmp_path):
     assert found.damping_ratio == pytest.approx(4.4e-4 * np.pi / found.period, rel=1e-6)
     assert found.stretch * 3 * 6.44e-4 / 0.1**2 < 5e-3
     assert found.planar
-    assert found.drive == "slide 'rail' with actuator ''"
+    assert found.drive == "slide 'rail' with actuator 'actuator 0'"
     for sensor in (found.force, found.torque):
         assert sensor.feels_contacts
         np.testing.assert_allclose(sensor.axes, np.eye(3), atol=1e-4)
