@@ -175,6 +175,8 @@ def panel(
     scene: Scene, law: Law, start: Sliding, reach: float, before: Panel | None = None
 ) -> Panel | None:
     """On from a state, along the tangent or as the panel before; none if Newton's method fails."""
+    if not np.isfinite(equations(start, law.leg.onward)).all():
+        return None
     by = changed(start, law.along_curve(start))
     by = by / np.sqrt(by @ by)
     amounts = float(by @ start.vector) + reach * POINTS[1:]

@@ -39,14 +39,16 @@ def first_slips(
     scene: Scene, way: StraightVibrissa, touch: float, friction: float
 ) -> Iterator[Sliding]:
     """States at first contact, still straight, by the direction of friction."""
-    gap, onward = way.gap(touch - _BEFORE), way.onward(touch)
-    normal = gap.spot.normal
+    before, onward = touch - _BEFORE, way.onward(touch)
+    lowest = way.lowest_contact(before, way.gap(before).arc_length)
+    spot = scene.body.nearest(way.foot(before) + lowest * scene.tangent, APART)
+    normal = spot.normal
     for tau in _directions(normal, scene.tangent, onward, friction):
-        numbers = 0.0, gap.arc_length, touch
+        numbers = 0.0, lowest, touch
         force = normal + friction * tau
-        place = gap.spot.point + APART * normal
+        place = spot.point + APART * normal
         vector = np.concatenate([place, friction * tau, force, np.array(numbers)])
-        yield state_of(scene, vector, gap.arc_length < 1)
+        yield state_of(scene, vector, lowest < 1)
 
 
 def _directions(normal: Floats, t: Floats, onward: Floats, friction: float) -> Iterator[Floats]:
@@ -99,7 +101,11 @@ class Rubbing(Walker[Rubbed]):
         self._friction = friction
 
     def _begin(self, travel: float) -> Rubbed | None:
-        for state in first_slips(self._scene, self._way, travel, self._friction):
+        for first in first_slips(self._scene, self._way, travel, self._friction):
+            # Along an upright face the vibrissa bends about its lower end.
+            low = first.contact.on_parallel - _AHEAD * self._scene.tangent
+            scene = self._on(self._scene.body.nearest(low, APART))
+            state = state_of(scene, first.vector, first.contact.tangent)
             found = self._panel(self._leg(travel), state, False, _FIRST, None)
             if found is not None and self._margins(found, 1)["stick"] > 0:
                 return Rubbed(state, np.zeros(3), self._stretch(found))

@@ -282,6 +282,20 @@ def test_past_a_polyhedron_it_is_at_rest_and_slides_against_friction(seed: int) 
     assert found > 3 or not tips.any()
 
 
+def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
+    """And slides along it; where its tip comes there it neither slides nor sticks, and hops."""
+    cube = polyhedron([(x, y, z) for x in (-0.6, 0.6) for y in (0.6, 2) for z in (-1, 1)])
+    path = FootPath([[1.2, 0.3], [-0.9, 0.2]], stations=40)
+    case = SpatialCase(Beam(radius=2e-3), body=cube, path=path, friction=0.3)
+    readings = solve_space(case)
+    assert [e["kind"] for e in readings.provenance["events"]] == ["touch", "phase", "slip-off"]
+    assert readings.touching.sum() > 10
+    place = readings.values(*CONTACT_POINT)[readings.touching]
+    np.testing.assert_allclose(place[:, :2], 0.6, atol=1e-11)
+    assert np.ptp(place[:, 2]) > 0.01
+    assert np.nanmax(rod_residuals(readings)) < 1e-10
+
+
 def test_edges_without_a_radius_and_odd_numbers_are_refused() -> None:
     cube = polyhedron([(x, y, z) for x in (-1, 1) for y in (0.6, 2) for z in (-1, 1)])
     path = FootPath([[1.4, 0.3], [-0.2, 0.1]])
