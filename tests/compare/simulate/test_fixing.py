@@ -7,7 +7,7 @@ import pytest
 from analytic import find_events, solve_sweep
 from compare import compare
 from compare.read.case import load_case
-from compare.simulate.expected import SPEED, expected
+from compare.simulate.expected import SPEED, expected, hurry
 from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.profile import profile
@@ -192,6 +192,17 @@ def test_the_written_case_limits_what_a_user_is_to_expect(tmp_path):
     assert asked.snap_off == pytest.approx(1.5 * most, rel=0.05)
     assert 0.02 < asked.snap_off + asked.lateness < 0.05
     assert not asked.usual() & {"rms", "transition", "snap_off", "lateness"}
+
+
+def test_the_soft_end_of_a_cone_lags_more(tmp_path):
+    """Its EI at the clamp is 5 times what the tip shows: as at so many times the speed."""
+    path = shipped_models()["tapered-whisker"]
+    cone, uniform = inspect_model(path), inspect_model(on_rail(tmp_path))
+    assert hurry(uniform) == pytest.approx(1, rel=1e-6)
+    assert hurry(cone) == pytest.approx(5, rel=0.01)  # 1/0.2: of a cone of 1 to 0.2, exactly
+    parts = [expected(cone, speed).parts for speed in (SPEED, 2 * SPEED)]
+    assert parts[0]["damping"] == pytest.approx(0.2 * cone.damping_ratio * 5 * SPEED, rel=0.01)
+    assert parts[1]["speed"] == pytest.approx(2**1.5 * parts[0]["speed"])
 
 
 @pytest.mark.slow
