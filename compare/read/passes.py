@@ -113,7 +113,7 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
         column = cells(table.frame, said.column, path, "fix [columns]")
         if said.unit and abs(said.gain) == 1:  # else the gain may be what converts it
             written = table.units.get(said.column, "")
-            check_unit(said.unit, said.column, written, DIMENSIONS[name])
+            check_unit(said.unit, said.column, written, DIMENSIONS[name], f" of {path}")
         if not pd.api.types.is_numeric_dtype(column):
             column = column.mask(column.astype(str).str.strip().isin(rig.missing))
         numbers = as_numbers(column, said.column, table.place)
@@ -150,6 +150,13 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         dropped[reason] = int(getattr(record, reason).sum())
     foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
     said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
+    for reading, row in zip(CLAMP_READINGS, read, strict=True):
+        if not np.isfinite(row).any():
+            what, remedy = (
+                f"{reading} of {name}",
+                "the channel was not recorded: leave the pass out",
+            )
+            raise InputError(what, "without any number", "read in some rows", remedy)
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None

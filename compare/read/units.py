@@ -64,7 +64,7 @@ def is_unit(text: str) -> bool:
     return _parsed(text) is not None
 
 
-def check_unit(unit: str, column: str, written: str, dimension: str) -> None:
+def check_unit(unit: str, column: str, written: str, dimension: str, of: str = "") -> None:
     """Refuse a unit of which the file itself says, over a column or in its name, that it is not."""
     in_name = _IN_NAME.search(column)
     said = written or (in_name[1] if in_name else "")
@@ -74,7 +74,7 @@ def check_unit(unit: str, column: str, written: str, dimension: str) -> None:
     if not math.isclose(own.to(dimension).magnitude, unit_in_si(unit, dimension)):
         allowed = f"in {said}, as the file says"
         raise InputError(
-            f"column {column!r}", f"in {unit}", allowed, "correct the one that is wrong"
+            f"column {column!r}{of}", f"in {unit}", allowed, "correct the one that is wrong"
         )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Beam, Case, InputError, circle, solve_sweep
 from compare.judge.rate import Rate
-from compare.simulate.expected import SPEED, expected
+from compare.simulate.expected import SPEED, expected, hurry
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
     as_intended,
@@ -145,7 +145,7 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
 def _tolerances(found: MeasuredBeam) -> Iterator[str]:
     most, ends = expected(found, SPEED).interval[1], [joint.s for joint in found.joints]
     links = np.diff(ends, prepend=0.0, append=found.length) / found.length
-    late = Rate(SPEED, found.damping_ratio).lateness
+    late = Rate(SPEED * hurry(found), found.damping_ratio).lateness
     for name, limit, reason in (
         ("rms", most, "the most that inspect expects of this model"),
         ("transition", links.max() / 2, "half a link"),

@@ -1,6 +1,7 @@
 """The worked example of a rig's files: every planted flaw is found, and the truth behind them."""
 
 import json
+import re
 import runpy
 import shutil
 from pathlib import Path
@@ -145,6 +146,22 @@ def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
     with pytest.raises(InputError, match=why) as found:
         usable(look_at_passes([folder / "data"], read_rig(folder / "rig.toml")))
     assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        (r"^(\d;.*;)[^;]*$", r"\1", "moment_z of tuesday-1 = without any number"),
+        ("mN;mN;mN mm", "N;N;N mm", r"column 'Mz' of .*tuesday\.csv = in mN mm: must be in N mm"),
+    ],
+)
+def test_a_file_that_is_not_as_the_others_is_named(folder, old, new, why):
+    file = folder / "data" / "tuesday.csv"
+    text = re.sub(old, new, file.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    file.write_text(text, encoding="utf-8")
+    vibrissa("rig", "data", "--rig", "rig.toml", cwd=folder).refused()
+    with pytest.raises(InputError, match=why):
+        look_at_passes([folder / "data"], read_rig(folder / "rig.toml"))
 
 
 def test_a_folder_without_files(folder):

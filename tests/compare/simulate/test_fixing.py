@@ -1,16 +1,19 @@
 """What `inspect --write` makes of models that are written badly."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
 from analytic import find_events, solve_sweep
 from compare import compare
 from compare.read.case import load_case
-from compare.simulate.expected import SPEED, expected
+from compare.simulate.expected import SPEED, expected, hurry
 from compare.simulate.fixing import case_of, fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.profile import profile
+from compare.simulate.rigidity import at_its_tip, by_its_clamp
+from compare.simulate.treatment import timestep
 from mujoco_models import inspect_model, shipped_models, simulate_model
 from tests.compare.simulate.faults import faults_in
 from tests.mujoco_models.inspect.chains import Chain
@@ -91,9 +94,17 @@ def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
 
 
 def test_a_step_is_a_fiftieth_of_the_first_period_or_less(tmp_path):
-    _, after = fixed(on_rail(tmp_path, ('timestep="0.01"', 'timestep="18"')))
+    """What touches with little inertia makes it less."""
+    found = inspect_model(on_rail(tmp_path, ('timestep="0.01"', 'timestep="18"')))
+    assert timestep(replace(found, geoms=())) == pytest.approx(found.period / 50)
+    light = [replace(geom, weight=1e5 * geom.weight) for geom in found.geoms]
+    assert timestep(replace(found, geoms=light)) < found.period / 60
+
+
+def test_the_first_joint_gives_way_as_its_piece_does(tmp_path):
+    _, after = fixed(on_rail(tmp_path, first="end", length=2.0))
     found = after.inspection.found
-    assert 1 / 500 < found.timestep / found.period < 1 / 49
+    assert by_its_clamp(found) / at_its_tip(found) == pytest.approx(1, abs=1e-4)
 
 
 def test_a_sensor_goes_to_where_the_vibrissa_begins(tmp_path):
@@ -201,6 +212,17 @@ def test_the_written_case_limits_what_a_user_is_to_expect(tmp_path):
     assert asked.snap_off == pytest.approx(1.5 * most, rel=0.05)
     assert 0.02 < asked.snap_off + asked.lateness < 0.05
     assert not asked.usual() & {"rms", "transition", "snap_off", "lateness"}
+
+
+def test_the_soft_end_of_a_cone_lags_more(tmp_path):
+    """Its EI at the clamp is 5 times what the tip shows: as at so many times the speed."""
+    path = shipped_models()["tapered-whisker"]
+    cone, uniform = inspect_model(path), inspect_model(on_rail(tmp_path))
+    assert hurry(uniform) == pytest.approx(1, rel=1e-6)
+    assert hurry(cone) == pytest.approx(5, rel=0.01)  # 1/0.2: of a cone of 1 to 0.2, exactly
+    parts = [expected(cone, speed).parts for speed in (SPEED, 2 * SPEED)]
+    assert parts[0]["damping"] == pytest.approx(0.2 * cone.damping_ratio * 5 * SPEED, rel=0.01)
+    assert parts[1]["speed"] == pytest.approx(2**1.5 * parts[0]["speed"])
 
 
 @pytest.mark.slow

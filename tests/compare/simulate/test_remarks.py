@@ -10,7 +10,7 @@ import pytest
 from analytic import Beam
 from compare.simulate.fixing import fix
 from compare.simulate.inspection import Inspection
-from compare.simulate.rigidity import clamp_stiffness, counted_twice
+from compare.simulate.rigidity import clamp_stiffness, counted_twice, radii
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
 from tests.compare.simulate.faults import WIRE, faults_in, rods
@@ -348,6 +348,8 @@ def test_a_taper_of_ei_without_one_of_radius_is_noted(tmp_path, tapered, noted):
         text = text.replace(name, f'{name} size="{0.005 * (0.98 - 0.8 * middle)}"')
     path.write_text(text)
     found = Inspection(inspect_model(path))
+    if tapered:  # in steps, of which a cone has the radii at the ends
+        assert radii(found.found) == pytest.approx((0.0049, 0.0009), abs=1e-9)
     (said,) = (r.text for r in found.remarks if r.subject == "uniformity")
     assert ("one that is solid would have" in said) is noted
     assert "EI goes from 0.9224 at the clamp to 0.00105 at the tip" in said  # 0.98^4 and 0.18^4
