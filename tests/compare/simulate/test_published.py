@@ -28,8 +28,8 @@ FOUND = {
     ),
     "Tentacle": ({"clamp", "gravity", "contact", "damping"}, set(), 0.0080),
     # Ten links are 0.8 per cent off by themselves. Swept until it would leave its plane: over the
-    # whole way, where it slips off sideways, the mean is 0.0113. Its pieces are steps of a taper,
-    # 11 per cent higher than those of a course from 20 to 15 mm, which left 0.0129.
+    # whole way, where it slips off sideways, the mean is 0.0113. Its pieces are steps of a taper:
+    # by 11 per cent higher ones than of a course from 20 to 15 mm, which left 0.0129.
     "Elephant's trunk": (
         {"clamp", "limits", "radius", "gravity", "contact", "damping"}, set(), 0.0141,
     ),
