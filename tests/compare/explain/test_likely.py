@@ -29,6 +29,8 @@ from compare.judge.allowance import NoiseAllowance
 from compare.measure.measurement import measure
 from tests.compare.synthetic import BEAM, STATIONS, changed, mute, solved, unread, untrusted
 
+_UNKNOWN = "beside that the readings disagree, and do not show why"
+
 
 def named(force_y: np.ndarray, contour: bool = False) -> str | None:
     """The cause of a disagreement in force_y alone, with causes that need the contour or not."""
@@ -194,3 +196,21 @@ def test_a_weight_that_was_forgotten_is_named():
 def test_a_cause_has_its_sign_and_its_size_in_lengths_of_the_vibrissa(made, said):
     """It is of length 2 here."""
     assert re.search(said, str(compare(solved(), made(solved())).likely))
+
+
+def test_why_most_stations_are_not_trusted_is_said():
+    reasons = {"a seldom reason": 1, "the usual reason": 40}
+    doubted = replace(untrusted(solved()), provenance={"unsettled": reasons})
+    found = measure(solved(), doubted, 5e-3)
+    said = likely_cause(found, Tolerances(), NoiseAllowance())
+    assert said and said.endswith("are not to be trusted, mostly as the usual reason")
+
+
+def test_beside_a_defect_of_the_record_what_is_left_without_a_cause_is_said():
+    """Rows that lack a number, and an error that is no fault's signature."""
+    exact = replace(solved(), provenance={})
+    force = exact.values("force_y") * (1 + 0.05 * np.sin(9 * np.linspace(0, 1, 128) ** 3))
+    force[[20, 40]] = np.nan
+    found = measure(exact, changed(exact, force_y=force), 5e-3)
+    said = likely_cause(found, Tolerances(), NoiseAllowance())
+    assert said == "2 of 128 rows lack a number; " + _UNKNOWN
