@@ -34,6 +34,10 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
     elif "which is a force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
                      "its speed")  # fmt: skip
+    elif "mocap" in found.drive and any(geom.meets and geom.friction for geom in found.geoms):
+        yield Remark("fault", "foot", "a mocap body has no speed in MuJoCo, so that friction does "
+                     "not see it move, and holds what should slide", "give it a slide joint with a "
+                     'velocity actuator, or set condim="1"')  # fmt: skip
     elif "mocap" in found.drive:
         yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
                      "contacts do not see it move: on the far side of an object contacts chatter. "
