@@ -330,6 +330,11 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "contact", f"{pair} touch before anything moves",
                      "exclude the pair" if own else "exclude the pair, or begin farther away",
                      meeting_objects if own else ())  # fmt: skip
+    if found.in_the_way and not found.self_contacts:
+        count = len(found.in_the_way)
+        yield Remark("fault", "contact", f"bent, it touches {count} geoms that move with its foot, "
+                     "another vibrissa's perhaps, and not the object alone",
+                     edits=treatment.apart(found) if found.springs != "flex" else ())  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return

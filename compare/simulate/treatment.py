@@ -92,6 +92,12 @@ def unseen(geom: Geom) -> tuple[Edit, ...]:
     return (Edit("geom", (("contype", "0"), ("conaffinity", "0")), (geom.number,)),)
 
 
+def apart(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """The vibrissa and what moves with its foot touch objects, but not each other."""
+    both = (*dict.fromkeys(geom.number for geom in found.geoms), *found.in_the_way)
+    return (Edit("geom", (("contype", "0"), ("conaffinity", "1")), both),)
+
+
 def joints(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
     numbers = tuple(i for joint in found.joints for i in joint.numbers)
     return () if found.springs == "flex" else (Edit("joint", tuple(attributes.items()), numbers),)

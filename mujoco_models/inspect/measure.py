@@ -33,7 +33,13 @@ from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed, nearest_axes
 from mujoco_models.inspect.parts import Names, Parts, find, masses_of
 from mujoco_models.inspect.probe import probe_of
-from mujoco_models.inspect.touching import self_contacts, thickness, touching
+from mujoco_models.inspect.touching import (
+    beside_it,
+    of_its_hand,
+    self_contacts,
+    thickness,
+    touching,
+)
 from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
@@ -93,7 +99,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = _sensed(welded or held, axes, tip_rigidity, length)
     probe = probe_of(path, thickness(model, parts))
-    loads, bent = _bent(held, axes, tip_rigidity / length**2)
+    loads, bent, in_the_way = _bent(held, model, axes, tip_rigidity / length**2)
     sag, weight = _sag(held, axes)
     mass = float(model.body_mass[list(parts.chain)].sum())
     return MeasuredBeam(
@@ -133,6 +139,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         planar=_planar(held, axes[2]),
         torsion=_torsion(held, axes[1], tip_rigidity, length),
         self_contacts=self_contacts(model, parts),
+        in_the_way=tuple(sorted(in_the_way | beside_it(model, parts, held.data, axes, length))),
         timestep=float(model.opt.timestep),
         integrator=cast(
             IntegratorKind,
@@ -245,9 +252,11 @@ def _joints(
     )
 
 
-def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
-    """Tip displacements under forces across the beam, ever larger ones."""
-    start = held.tip
+def _bent(
+    held: Held, model: mujoco.MjModel, axes: Floats, unit: float
+) -> tuple[Floats, Floats, set[int]]:
+    """Tip displacements under forces across the beam, ever larger ones, and what it meets then."""
+    start, met = held.tip, set[int]()
     loads = unit * np.array(_LOADS)
     bent = []
     for load_ in loads:
@@ -255,8 +264,9 @@ def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
         held.rest()
         moved = held.tip - start
         bent.append([moved @ axes[0], -moved @ axes[1]])
+        met |= of_its_hand(model, held.parts, held.data.qpos)
     held.unload()
-    return loads, np.array(bent)
+    return loads, np.array(bent), met
 
 
 def _sag(held: Held, axes: Floats) -> tuple[float, float]:

@@ -163,6 +163,8 @@ class MeasuredBeam(Shown):
         twist.
     self_contacts : tuple of str
         Pairs of geoms, one of them the vibrissa's, that touch in the first state.
+    in_the_way : tuple of int
+        Geoms that move with the foot and touch the vibrissa once that or they are bent.
     timestep : float
     integrator : str
     cone : str
@@ -211,6 +213,7 @@ class MeasuredBeam(Shown):
     planar: bool
     torsion: float
     self_contacts: tuple[str, ...]
+    in_the_way: tuple[int, ...]
     timestep: float
     integrator: IntegratorKind
     cone: ConeKind

@@ -144,13 +144,50 @@ def name_of_geom(model: mujoco.MjModel, number: int) -> str:
 
 def self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
     """Pairs that touch in the model's first state, one of them the vibrissa's."""
+    pairs = _met(model, parts, mujoco.MjData(model))
+    return tuple(" and ".join(name_of_geom(model, g) for g in pair) for pair in pairs)
+
+
+def of_its_hand(model: mujoco.MjModel, parts: Parts, state: Floats) -> set[int]:
+    """What moves with the foot and touches the vibrissa in a state."""
     data = mujoco.MjData(model)
+    data.qpos[:] = state
+    others = {g for pair in _met(model, parts, data) for g in pair} - {*parts.geoms, -1}
+    return others & _on_same_hand(model, parts)
+
+
+def beside_it(
+    model: mujoco.MjModel, parts: Parts, data: mujoco.MjData, axes: Floats, reach: float
+) -> set[int]:
+    """What gives way itself, as another vibrissa, in the plane and within reach of this one."""
+    mine = [*parts.geoms]
+    kind, meets = model.geom_contype, model.geom_conaffinity
+    met = (kind & np.bitwise_or.reduce(meets[mine], initial=0)) > 0
+    met |= (meets & np.bitwise_or.reduce(kind[mine], initial=0)) > 0
+    away = data.geom_xpos - data.xpos[parts.chain[0]]
+    near = np.linalg.norm(away, axis=1) < reach + model.geom_rbound
+    thick = model.geom_size[:, 0] + model.geom_size[mine, 0].max(initial=0.0)
+    in_plane = np.abs(away @ axes[2]) < thick
+    moves = model.body_weldid[model.geom_bodyid] != model.body_weldid[parts.foot]
+    return {*np.flatnonzero(met & near & in_plane & moves).tolist()} & _on_same_hand(model, parts)
+
+
+def _on_same_hand(model: mujoco.MjModel, parts: Parts) -> set[int]:
+    """Geoms of bodies that move with the foot, without the vibrissa's."""
+    root = model.body_rootid[model.geom_bodyid]
+    same = np.flatnonzero((root == model.body_rootid[parts.foot]) & (root != 0))
+    of_chain = np.isin(model.geom_bodyid[same], parts.chain)
+    return {*same[~of_chain].tolist()}
+
+
+def _met(model: mujoco.MjModel, parts: Parts, data: mujoco.MjData) -> list[tuple[int, ...]]:
+    """Pairs of geoms that touch in a state, one of them the vibrissa's; -1 is a flex."""
     mujoco.mj_forward(model, data)
     flex = -2 if parts.rod is None else parts.rod.flex
-    found = []
-    for contact in data.contact:
-        mine = not {*parts.geoms}.isdisjoint(contact.geom.tolist()) or flex in contact.flex
-        if contact.efc_address >= 0 and mine:
-            names = [name_of_geom(model, g) for g in contact.geom.tolist()]
-            found.append(" and ".join(names))
-    return tuple(dict.fromkeys(found))
+    found = [
+        tuple(contact.geom.tolist())
+        for contact in data.contact
+        if contact.efc_address >= 0
+        and (not {*parts.geoms}.isdisjoint(contact.geom.tolist()) or flex in contact.flex)
+    ]
+    return list(dict.fromkeys(found))

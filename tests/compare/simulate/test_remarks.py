@@ -332,6 +332,21 @@ def test_friction_does_not_see_a_mocap_foot_move(tmp_path):
         assert any("friction does not see it move" in str(fault) for fault in said) is faulty
 
 
+@pytest.mark.parametrize(("beside", "named"), [("0.15 0 0", True), ("0.15 0 0.1", False)])
+def test_another_vibrissa_of_the_same_hand_gets_in_the_way(tmp_path, beside, named):
+    """One of a row of two was called sound, and read 6 % off; in another plane none matters."""
+    link = '<geom fromto="0 0 0 0 0.5 0"/>'
+    joint = '<joint axis="0 0 1" stiffness="2"/>'
+    inner = f'<body pos="0 0.5 0">{joint}{link}</body>'
+    other = f'<body pos="{beside}">{joint}{link}{inner}</body>'
+    path = Chain(inside_foot=other).write(tmp_path)
+    before = Inspection(inspect_model(path, foot="whisker-foot", geoms="whisker-geom*"))
+    assert any("another vibrissa" in str(fault) for fault in before.faults) is named
+    names = {"foot": "whisker-foot", "geoms": "whisker-geom*"}
+    after = fix(path, names, before, tmp_path / "fixed.xml").inspection
+    assert not any("another vibrissa" in str(fault) for fault in after.faults)
+
+
 def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):
     """And not as hard as steps allow, which would chatter."""
     rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
