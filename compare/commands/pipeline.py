@@ -88,7 +88,8 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
             terminal.print_line(str(fault))
     elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
         _print_beside_rest(job, comparison, folder)
-    more = "" if asked.budget else "; --budget adds what the disagreement is made of"
+    several = isinstance(job, Job) and job.case.others
+    more = "" if asked.budget or several else "; --budget adds what the disagreement is made of"
     terminal.print_report(written, more)
     return comparison.agrees and possible and split.reached
 
@@ -136,8 +137,8 @@ def print_comparison(comparison: AnyComparison) -> None:
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
     """Print what of a disagreement in motion is there at rest, and what the motion adds."""
-    if job.case.friction:
-        return  # at rest, many states are possible
+    if job.case.friction or job.case.others:
+        return  # at rest many states are possible, or MuJoCo takes one object only
     from compare.simulate.dispatch import at_rest
     from mujoco_models import simulate_sweep
 

@@ -62,6 +62,8 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
         f"and see which makes them agree; of a rig, {rig}",
     }
     source = comparison.candidate.source
+    if "others" in comparison.reference.provenance:  # no budget past several objects
+        source = ""
     return f"{unknown}; {next(to for who, to in advice.items() if source.startswith(who))}"
 
 

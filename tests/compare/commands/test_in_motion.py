@@ -151,3 +151,21 @@ def test_what_sweeps_our_models_only_says_so(folder):
     moving = CASE[: CASE.index("[model]")] + "[motion]\nspeed = 0.1\n"
     (folder / "case.toml").write_text(moving)
     vibrissa("view", "case.toml", cwd=folder).refused("motion")
+
+
+def test_past_two_objects_it_is_swept_and_reported(tmp_path):
+    """At rest MuJoCo takes one: nothing beside rest, and no budget is advised."""
+    (tmp_path / "posts.toml").write_text(
+        "[beam]\nradius = 0.002\n"
+        '[[profile]]\nkind = "circle"\nradius = 0.1\nlowest = [0.0, 0.7]\n'
+        '[[profile]]\nkind = "circle"\nradius = 0.3\nlowest = [-0.25, 0.35]\n'
+        "[sweep]\nstart = 0.11\nstop = -0.12\nstations = 20\n"
+        '[mujoco]\nsegments = 10\n[motion]\nspeed = 0.05\n'
+    )  # fmt: skip
+    done = vibrissa("run", "posts.toml", "--out", "out", cwd=tmp_path)
+    done.ended(1, "report.html")
+    assert "--budget" not in done.stdout
+    events = json.loads((tmp_path / "out" / "comparison.json").read_text())["phases"]["transitions"]
+    assert abs(events["second_contact_start"]["difference"]) < 5e-3
+    refused = vibrissa("run", "posts.toml", "--budget", "--out", "out", cwd=tmp_path)
+    refused.refused("a budget in motion can take no more")
