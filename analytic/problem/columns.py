@@ -23,6 +23,7 @@ STATUSES = (
     "lost",
     "touches again",
     "sticks",
+    "creeping",
 )
 SECOND_CONTACT = (
     "second_contact_force",

@@ -14,6 +14,8 @@ from compare.show.numbers import quantity
 _MEANINGS = {
     "touches again": ": another part of the vibrissa touches the object, or would lie in it",
     "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
+    "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
+    "impratio 100, a faster foot, or harder contacts in shorter steps",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",

@@ -200,7 +200,7 @@ class MovingModel(SteppedModel):
         contacts = self.contacts()
         return {
             "tip_angle": self.tip_angle,
-            "status": "ok",
+            "status": "creeping" if self._creeps(speed) else "ok",
             "kinetic_share": self.kinetic_share(),
             **contacts.of_places(self.data.contact.pos[:, :2], self._places(contacts), self._push),
         }

@@ -16,6 +16,9 @@ from mujoco_models.motion import Motion
 # (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
 # which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
 MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
+# Of its coefficient that friction has at a contact that slides, at least; and of the foot's speed
+# that one moves which sticks, at most.
+_RUBS, _CREEPS = 0.95, 0.1
 CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
 
 
@@ -113,6 +116,27 @@ class SteppedModel(ABC):
             )
         self.model.geom_condim[geoms] = 3
         self.model.geom_friction[geoms, 0] = motion.friction
+
+    def _creeps(self, speed: float) -> bool:
+        """Whether a contact slides, and MuJoCo's friction is less than its coefficient says.
+
+        It is a damper up to what the cone allows: where the foot is slow [length/time], all that it
+        would have to rub is not there, and what should stick creeps along with the foot.
+        """
+        wrench, elliptic = np.zeros(6), self.model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
+        for i, contact in enumerate(self.data.contact):
+            if contact.dim < 3 or contact.efc_address < 0 or not contact.friction[0]:
+                continue
+            mujoco.mj_contactForce(self.model, self.data, i, wrench)
+            along = self.data.efc_vel[contact.efc_address :][: 3 if elliptic else 4]
+            across = (
+                along[1:] if elliptic else (along[::2] - along[1::2]) / contact.friction[:2] / 2
+            )
+            rubs = float(np.hypot(*wrench[1:3]))
+            less = rubs < _RUBS * contact.friction[0] * wrench[0]
+            if less and np.hypot(*across) > _CREEPS * abs(speed):
+                return True
+        return False
 
     def _follow_inertia(self) -> None:
         """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""

@@ -143,6 +143,7 @@ class MovingSpace(SteppedModel):
             "contact_arc_length": arc,
             "penetration": float(weights @ depth),
             "phase": "tip" if tip else "tangent",
+            "status": "creeping" if self._creeps(speed) else "ok",
         }
 
 

@@ -29,7 +29,16 @@ NORMAL = ("normal_x", "normal_y", "normal_z")
 FRICTION = ("friction_x", "friction_y", "friction_z")
 """Over the normal force, on the vibrissa."""
 PHASES_IN_SPACE = ("free", "tip", "tangent")
-STATUSES_IN_SPACE = ("ok", "diverged", "slipped off", "sticks", "unsettled", "chattering", "lost")
+STATUSES_IN_SPACE = (
+    "ok",
+    "diverged",
+    "slipped off",
+    "sticks",
+    "unsettled",
+    "chattering",
+    "creeping",
+    "lost",
+)
 _WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}
 
 
