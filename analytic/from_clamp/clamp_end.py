@@ -155,8 +155,9 @@ def _contacts(end: ClampEnd) -> Floats:
         aside = np.where(length < 1, np.abs(slope - end.parallel(slope)), np.inf)
         missed = np.fmin(np.abs(length - 1), aside)
         # A pendulum's turning points are all as parallel: of those it is the first one.
-        apart = missed - least[which]
-        nearer = (apart < -_SAME) | ((apart < _SAME) & (length < best[which]))
+        so_far = least[which]
+        nearer = missed < so_far - _SAME
+        nearer |= (missed < so_far + _SAME) & (length < best[which])
         best[which[nearer]], least[which[nearer]] = length[nearer], missed[nearer]
     return np.where(_is_flat(end), 1.0, best)
 

@@ -62,6 +62,7 @@ def calibrate(
     require_use(context, KNOWN, *([A_RIG] if from_rigs(files) or column else []))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
+    from analytic.from_clamp.calibration.calibrate import doubt_of_case
     from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
     from compare.commands.rig_files import RigFiles
@@ -85,6 +86,8 @@ def calibrate(
         if LAG not in found.found and (said := lag_remembered(passes)) is not None:
             terminal.print_line(f"{said}: fit lag too")
         terminal.show(*calibration_summary(found))
+        if not found.explains and (why := doubt_of_case(passes[0], known)) is not None:
+            terminal.print_line(why)
         terminal.keep(folder / "calibration.json", calibration_document(found))
         text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
         terminal.keep(folder / "case.toml", text)

@@ -5,10 +5,10 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError
 from analytic.from_clamp.noise import scatter
 from analytic.problem.arrays import Booleans, Floats
+from compare.read.drift import FEWEST
+from compare.read.loaded import loaded_from
 
-_BLOCKS = 5  # of a free stretch, of which the first three have a straight line
-_BENT = 0.03  # of the largest reading: a last block farther off that line is in contact
-_SIGMAS = 6.0  # of the noise of a block's mean
+_SIGMAS = 6.0  # of the noise
 _DRIFT = 0.25  # of the largest reading; more is no drift of a zero
 _STILL = 10  # rows that are equal, at least, while ...
 _MOVING = 0.1  # ... another reading changes by this part of its largest one
@@ -20,7 +20,7 @@ _SMOOTH = 0.25  # ... readings change by less than this part of what their slope
 
 
 def check_free(
-    which: str, stretch: float, foot_x: Floats, values: Floats, here: Booleans, name: str
+    which: str, stretch: float, foot_x: Floats, values: Floats, here: Booleans, name: str, si: bool
 ) -> None:
     """Refuse a stretch that leads into the contact; it begins at the end of the pass."""
     travel = float(np.ptp(foot_x))
@@ -28,22 +28,16 @@ def check_free(
         what = f"{stretch:g}, of a pass ({name}) of {travel:.4g}"
         remedy = "the contact would count as zero: state a shorter stretch"
         raise InputError(f"passes.{which}", what, "shorter than the pass", remedy)
-    if which == "free_after":
-        values, here = values[:, ::-1], here[::-1]
-    rows = np.flatnonzero(here & np.isfinite(values).all(axis=0))
-    if len(rows) < 2 * _BLOCKS:
+    order = slice(None, None, -1 if which == "free_after" else 1)
+    way = np.abs(foot_x - foot_x[order][0])[order]
+    begun = loaded_from(way, values[:, order], here[order])
+    if begun is None:
         return
-    for reading, row in zip(CLAMP_READINGS, values, strict=True):
-        blocks = np.array_split(row[rows], _BLOCKS)
-        means = np.array([block.mean() for block in blocks])
-        beyond = means[-1] - np.polyval(np.polyfit(np.arange(3), means[:3], 1), _BLOCKS - 1)
-        size = float(np.nanmax(np.abs(row - np.median(row[rows]))))
-        noise = scatter(row[rows]) / np.sqrt(len(blocks[-1]))
-        limit = max(_BENT * size, _SIGMAS * noise * 2.5)  # the line's end has 2.4 times as much
-        if abs(beyond) > limit:
-            what = f"{stretch:g}, in which {reading} of {name} bends off by {beyond / size:+.0%}"
-            remedy = "the vibrissa touches something there: state a shorter stretch"
-            raise InputError(f"passes.{which}", what, "flat but for drift and noise", remedy)
+    stated, at, sure = (f"{1e3 * x:.3g} mm" if si else f"{x:.3g}" for x in (stretch, *begun))
+    what = f"{stated}, of which {name} is loaded from about {at} on"
+    remedy = f"state less than {sure}" if np.sum(way < begun[1]) > FEWEST else "leave it out"
+    remedy += ", or begin and end passes farther off"
+    raise InputError(f"passes.{which}", what, "free but for drift and noise", remedy)
 
 
 def check_drift(drift: Floats, values: Floats, name: str) -> None:

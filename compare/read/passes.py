@@ -169,7 +169,8 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         if stretches:
             free = np.any([*stretches.values()], axis=0)
             for which, here in stretches.items():
-                check_free(which, getattr(rig.passes, which), foot_x, before, here, name)
+                stated = getattr(rig.passes, which)
+                check_free(which, stated, foot_x, before, here, name, raw.beam.si)
             zero = zero_of(foot_x, before, stretches, name)
             values = before - zero.line
             check_drift(zero.drift, values, name)

@@ -14,6 +14,7 @@ from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
+from analytic.from_clamp.reconstruct import doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
@@ -21,6 +22,7 @@ from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 from analytic.problem.shown import Shown
+from analytic.problem.support import support_record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -202,15 +204,21 @@ def calibrate(
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
     kinds = [UNKNOWNS[name] for name in names]
     fit = VibrissaFit(measured, case, kinds)
-    fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
+    try:
+        fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
+        for name, number in zip(names, numbers.tolist(), strict=True):
+            _check_inside(name, number, fit.sought(numbers))
+    except InputError as error:
+        if (why := doubt_of_case(passes[0], case)) is None:
+            raise
+        raise error.because(why) from error
     covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
     alike_most = np.abs(covariance / np.outer(deviations, deviations) - np.eye(len(names))).max()
     hidden = None
     if alike_most > _ALIKE:
         hidden = undistinguished(fit, numbers, covariance)
-    for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
-        _check_inside(name, number, fit.sought(numbers))
+    for i, number in enumerate(numbers.tolist()):
         if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
             raise _not_distinguished(names, covariance, i, hidden)
     sought = fit.sought(numbers)
@@ -238,6 +246,13 @@ def calibrate(
         len(set(measured.ways)) > 1,
         hidden,
     )
+
+
+def doubt_of_case(readings: Readings, case: Case) -> str | None:
+    """What may be mistaken in readings that are of no vibrissa as the case has, past any object."""
+    held = {**readings.provenance, "support": {}, **support_record(case.support)}
+    of_case = replace(readings, beam=case.beam, provenance=held)
+    return doubt(reconstruct(of_case), of_case)
 
 
 def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:

@@ -1,5 +1,6 @@
 """Readings in wrong units, or with wrong signs, are no contacts; which mistake it is, is found."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -9,6 +10,7 @@ from analytic import (
     Case,
     InputError,
     Sweep,
+    calibrate,
     circle,
     named_case,
     reconstruct,
@@ -57,6 +59,18 @@ def test_swapped_forces_are_named(rig):
     wrong = replace(rig, table=rig.table.assign(force_x=y, force_y=x))
     with pytest.raises(InputError, match="likely force_x and force_y, swapped"):
         require_beam(reconstruct(wrong), wrong)
+
+
+@pytest.mark.parametrize(
+    ("factors", "likely"),
+    [
+        (dict.fromkeys(FORCES, 1e-3), "likely the unit of both forces (1000 times too small)"),
+        (dict.fromkeys((*FORCES, "moment_z"), -1.0), "all signs (the vibrissa's action"),
+    ],
+)
+def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):
+    with pytest.raises(InputError, match=re.escape(likely)):
+        calibrate(mistaken(rig, **factors), RIG)
 
 
 @pytest.mark.parametrize("name", ["moment_z", "force_x"])

@@ -41,10 +41,10 @@ flexural_rigidity = {{ standard = "10 %" }}
 """
 
 
-def written(folder, name, way, rng, rows=500, lag=LAG):
+def written(folder, name, way, rng, rows=500, lag=LAG, free=0.01):
     """A pass as a rig writes it, 1 % of noise and a zero on it."""
     case = Case(BEAM, OBJECT, Sweep(3000, direction=way))
-    free = 0.01 if way == "left" else -0.01
+    free = free if way == "left" else -free
     ends = case.foot_x[[0, -1]] + np.array([free, -free])
     dense = solve_sweep(Case(BEAM, OBJECT, Sweep(3000, *ends, direction=way)))
     order = np.argsort(dense.values("foot_x"))
@@ -87,6 +87,19 @@ def test_the_lag_is_found_named_and_taken_off(rig, tmp_path):
     (tmp_path / "rig.toml").write_text(f"{RIG}lag = {line}\n")
     again = vibrissa("rig", rig / "raw", "--rig", "rig.toml", "--out", "again", cwd=tmp_path)
     again.ended(0, "no lag of the readings shows")
+
+
+@pytest.mark.slow
+def test_a_contact_called_free_is_no_drift_and_shows_no_lag(tmp_path):
+    """Of 5 mm that are stated 1 mm is free: the load was a drift along a curve, and a lag."""
+    rng = np.random.default_rng(5)
+    for i in range(4):
+        written(tmp_path, f"run{i}.csv", ("left", "right")[i % 2], rng, lag=0.0, free=1e-3)
+    said = RIG.replace('free_before = "8', 'free_before = "5').replace('"8 mm"', '"0.9 mm"')
+    (tmp_path / "rig.toml").write_text(said)
+    done = vibrissa("rig", "raw", "--rig", "rig.toml", "--out", "out", cwd=tmp_path)
+    done.refused("passes.free_before = 5 mm, of which run0 is loaded from about")
+    assert not list((tmp_path / "out").glob("*.parquet"))
 
 
 @pytest.mark.slow

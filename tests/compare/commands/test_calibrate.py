@@ -81,6 +81,15 @@ def test_ten_passes_of_6000_rows_take_less_than_300_mb(folder, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_fit_that_is_bad_because_forces_are_swapped_says_so(folder, tmp_path):
+    case = Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(60))
+    swapped = solve_sweep(case).table.rename(columns={"force_x": "force_y", "force_y": "force_x"})
+    swapped[list(SENSED)].to_csv(tmp_path / "rig.csv", index=False)
+    done = vibrissa("calibrate", "rig.csv", folder / "object.toml", cwd=tmp_path)
+    done.ended(1, "likely force_x and force_y, swapped")
+
+
+@pytest.mark.slow
 def test_several_files_are_passes(folder, tmp_path):
     given = ("--noise", "0.01", "--fit", "clamp_stiffness", "--out", "found")
     both = (folder / "swept.parquet", folder / "rig.csv")

@@ -105,8 +105,8 @@ def jumped(row, by):
     ("change", "stretches", "why"),
     [
         (np.asarray, (9.0, 0.2), r"passes.free_before = 9, of a pass .*shorter than the pass"),
-        (np.asarray, (0.7, 0.2), r"passes.free_before = 0.7, in which .* bends off"),
-        (np.asarray, (0.2, 1.0), r"passes.free_after = 1, in which .* bends off"),
+        (np.asarray, (0.7, 0.2), r"passes.free_before = 0.7, of which pass is loaded from about 0"),
+        (np.asarray, (0.2, 1.0), r"passes.free_after = 1, of which pass is loaded from about 0"),
         (lambda x: x[:, :500], (0.2, 0.05), "passes.free_"),
         (saturated, (0.2, 0.2), r"force_y = .* rows of pass: it saturates"),
         (stuck, (0.2, 0.2), r"moment_z = .* over 80 rows of pass: it is stuck"),
