@@ -131,7 +131,7 @@ test-floors:     ## the fast tests with the oldest dependencies that are allowed
 	sed -nE '/^dependencies/,/^]/s/^ +"([a-z0-9-]+)>=([0-9.]+).*/\1==\2.*/p' pyproject.toml > .venv-floors/floors.txt
 	.venv-floors/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-floors/floors.txt --editable '.[dev,dask]'
 	.venv-floors/bin/python -m pytest $(PARALLEL) -o filterwarnings= $(ARGS) \
-	  --deselect tests/figures/test_reference_tables.py::test_the_tables_are_made_again_bit_for_bit
+	  --deselect tests/figures/test_reference_tables.py::test_the_tables_are_made_again
 
 install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras, for the league table
 

@@ -154,10 +154,17 @@ def _lines(found: "Prescription", error: float, si: bool) -> list[str]:
     whisker = found.whisker
     settings, motion, period = whisker.settings, whisker.motion, whisker.period
     second, stiffness = (" s", " N/m") if si else ("", "")
+    most = _upwards(found.error)
     return [
         f"A {settings.beam} of {settings.segments} segments, swept at {motion.speed:g} L/T1, T1 = "
-        f"{period:.4g}{second}: {found.error:.1e} rms at most, of {error:g} asked for: from MuJoCo "
+        f"{period:.4g}{second}: {most} rms at most, of {error:g} asked for: from MuJoCo "
         f"at rest with {REFERENCE} segments, and {REFERENCE_OFF:g} that those are off.",
         f"Time step {motion.timestep * period:.4g}{second} (T1/{1 / motion.timestep:g}), "
         f"integrator {motion.integrator}, contacts of {whisker.contact_stiffness:.4g}{stiffness}.",
     ]
+
+
+def _upwards(x: float) -> str:
+    """Two digits of a bound, rounded up."""
+    digit = 10.0 ** (math.floor(math.log10(x)) - 1)
+    return f"{math.ceil(x / digit) * digit:.1e}"
