@@ -69,9 +69,9 @@ class Walker(ABC, Generic[Held]):
                         break
                     at, contact = touch, self._begin(touch)
                     self._note("touch", touch)
-                    if contact is None:
-                        touch, unknown_until = self._clear_of(at)
-                        status = "sticks"
+                    if contact is None:  # it is dragged along to where it would be clear, too
+                        touch, _ = self._clear_of(at)
+                        unknown_until, status = np.inf if touch is None else touch, "sticks"
                         continue
                 at, contact, arrived = self._follow(contact, at, station)
                 if arrived:

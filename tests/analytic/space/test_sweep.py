@@ -13,6 +13,7 @@ from analytic import (
     catenary,
     circle,
     ellipse,
+    polygon,
     solve_contact,
     solve_sweep,
 )
@@ -229,12 +230,21 @@ def test_a_path_into_the_body_is_refused():
         swept(sphere(1.0, (0.0, 0.1, 0.0)), [[1.3, 0.2], [-1.5, 0.2]])
 
 
-@pytest.mark.parametrize("side", [1, -1])
-def test_above_both_ends_of_a_section_the_nearer_side_of_its_prism_is_near(side):
-    """A half circle whose tips go straight up: a vibrissa beside it, taller than that, is clear."""
-    body, apart = prism(circle(0.3, (0.0, 0.3))), 0.25
-    for height in (0.5, 0.7, 2.0):
-        spot = body.nearest(np.array([side * 1.0, height, 0.2]), apart)
-        below = np.hypot(1.0, height - 0.6) - 0.3 if height < 0.6 else 0.7
-        assert spot.distance == pytest.approx(below, abs=1e-12)
-        assert side * spot.normal[0] > 0.9
+@pytest.mark.parametrize("seed", range(20))
+def test_the_nearest_point_of_a_prism_is_the_nearest_of_its_section(seed):
+    """Of a polygon whose ends are at different heights, and the upright sides above them."""
+    draw = np.random.default_rng(seed)
+    x = np.sort(draw.uniform(-1, 1, int(draw.integers(3, 9))))
+    line = np.column_stack([x, draw.uniform(0.1, 0.9) * (x - draw.uniform(-0.5, 0.5)) ** 2])
+    body = prism(polygon(line.tolist()))
+    tops = line[[0, -1]] + [0, 9]
+    around = np.vstack([tops[:1], line, tops[1:]])
+    begin, run = around[:-1], np.diff(around, axis=0)
+    for point in draw.uniform([-2, -1], [2, 3], (200, 2)):
+        share = np.clip(((point - begin) * run).sum(axis=1) / (run**2).sum(axis=1), 0, 1)
+        nearest = np.hypot(*(begin + share[:, None] * run - point).T).min()
+        under = point[1] < np.interp(point[0], *line.T)
+        outside = under or not line[0, 0] < point[0] < line[-1, 0]
+        found = body.nearest(np.array([*point, 0.3]), 0.25).distance
+        assert (found > 0) == outside
+        assert not outside or found == pytest.approx(nearest, abs=1e-12)

@@ -84,14 +84,17 @@ class Prism(Body):
         """Parameter of the contour's point from which (x, y) lies along the normal."""
         places = np.linspace(*self.contour.t_range, _PLACES)
         ahead, _ = self._ahead(places, x, y)
-        if ahead[0] <= 0 <= ahead[-1]:  # above both ends: the nearer upright side
-            low, high = self.contour.at(places[[0, -1]]).xi
-            return float(places[0] if 2 * x < low + high else places[-1])
-        if ahead[0] <= 0:
+        left, right = self.contour.at(places[[0, -1]]).xi
+        if ahead[0] <= 0 and x <= left:
             return float(places[0])
-        if ahead[-1] >= 0:
+        if ahead[-1] >= 0 and x >= right:
             return float(places[-1])
-        end = int(np.argmax(ahead <= 0))
+        # Above an end, on the other side of it, such normals are far off.
+        last = -1 if 2 * x >= left + right else 0
+        falls = np.flatnonzero((ahead[:-1] > 0) & (ahead[1:] <= 0))
+        if not len(falls):  # inside
+            return float(places[last])
+        end = int(falls[last]) + 1
         low, high = float(places[end - 1]), float(places[end])
         t = low + (high - low) * float(ahead[end - 1] / (ahead[end - 1] - ahead[end]))
         rounding = _ROUNDING * float(places[-1] - places[0])
