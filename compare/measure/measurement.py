@@ -33,7 +33,7 @@ class Measurement(SweepPair[Readings]):
 
     The candidate's rows are in the order of the motion, its ``foot_x`` without the offset. Events
     are ``first_contact``, ``phase_b_start``, ``phase_b_end`` and ``snap_off``; where a sweep has a
-    second contact, and both say where they touch, ``second_contact_start`` and ``.._end`` besides.
+    second contact, and both look for one, ``second_contact_start`` and ``.._end`` besides.
     """
 
     alignment: Alignment  # the compared stations, and why the others are not

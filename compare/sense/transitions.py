@@ -67,15 +67,13 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]] | None:
     """Where along the sweep a second contact begins and ends, and how far that may be off.
 
-    The source's own values where it located them; else half-way between stations. None if the
-    readings do not say where the vibrissa touches, and for an end that is the snap-off.
+    The source's own values where it located them; else half-way between stations. None if it does
+    not look for one, and for an end that is the snap-off.
     """
-    if "contact_x" not in readings.table:
-        return None
     recorded = readings.provenance.get("events", {})
     found = {name: (recorded.get(name), 0.0) for name in SECOND}
     if "second_contact_x" not in readings.table:
-        return found
+        return found if {*SECOND} & {*recorded} else None
     at = readings.running_values
     touching = np.flatnonzero(np.isfinite(readings.values("contact_x")))
     second = np.isfinite(readings.values("second_contact_x"))[touching]

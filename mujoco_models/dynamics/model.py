@@ -190,10 +190,10 @@ class MovingModel(SteppedModel):
         return bool(self.contacts().loaded.any())
 
     @property
-    def touches_twice(self) -> bool:
-        if self.data.ncon < 2 or (len(self._obstacles) == 1 and self._layout.vibrissa.is_straight):
-            return False
-        return len(self._places(self.contacts())) > 1
+    def touches_twice(self) -> bool | None:
+        if len(self._obstacles) == 1:  # where links show one place of two, no step knows
+            return None
+        return self.data.ncon > 1 and len(self._places(self.contacts())) > 1
 
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""

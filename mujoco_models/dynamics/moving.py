@@ -53,9 +53,9 @@ class SteppedModel(ABC):
         """Whether a contact is loaded."""
 
     @property
-    def touches_twice(self) -> bool:
-        """Whether contacts are loaded in two places that are apart."""
-        return False
+    def touches_twice(self) -> bool | None:
+        """Whether two objects are touched at once; None if it does not look."""
+        return None
 
     @abstractmethod
     def clamp(self) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ class Step:
     p: float  # parameter of the clamp's way, that of a sweep the foot position [L]
     clamp: Floats  # force and moment, as the sensor gives them [EI/L^2, EI/L]
     touches: bool  # whether a contact is loaded
-    twice: bool = False  # or two, in places that are apart
+    twice: bool | None = None  # or of two objects; None if that is not known
 
 
 class Touches:
@@ -76,7 +76,7 @@ class StationMeans:
         self._stations: list[float] = stations.tolist()
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
-        self.contact, self._second = Touches(), Touches()
+        self.contact, self._second, self._tells = Touches(), Touches(), False
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(len(names))
         self._losses = 0
@@ -94,12 +94,11 @@ class StationMeans:
         return len(self.rows) == len(self._stations)
 
     def second_contact(self) -> dict[str, float | None]:
-        """Where a second contact begins and ends, if there is one; a snap-off ends both."""
-        if self._second.first is None:
+        """Where a second contact begins and ends, if that is known; a snap-off ends both."""
+        if not self._tells:
             return {}
-        both = (
-            self.contact.last is not None and self.contact.lost - self._second.lost < _HALF_PERIOD
-        )
+        lag = self.contact.lost - self._second.lost
+        both = self.contact.last is not None and lag < _HALF_PERIOD
         end = None if both else self._second.last
         return {"second_contact_start": self._second.first, "second_contact_end": end}
 
@@ -128,7 +127,8 @@ class StationMeans:
             self._losses += before.touches
         apart = self.contact.first is not None and not (before.touches and after.touches)
         self.contact.follow(after.time, after.p, after.touches)
-        self._second.follow(after.time, after.p, after.twice)
+        self._tells = after.twice is not None
+        self._second.follow(after.time, after.p, bool(after.twice))
         if self.complete:
             return False
         station = self._stations[len(self.rows)]

@@ -5,20 +5,20 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans
 from analytic.problem.case import Case
 from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contact_side import Side
-from mujoco_models.model.contacts import places_after
 from mujoco_models.sweep.bracket import Bracket
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import relax
+from mujoco_models.sweep.second import At, SecondContact
 from mujoco_models.sweep.state import State, turned
 
 Model = TypeVar("Model", bound=Balance)
@@ -29,7 +29,6 @@ _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5
 _LITTLE = 1e-3  # of a step; a contact of 5e7 EI/L^3 is not lost then, and rest is 1e-5 of it
 _PLACES = 9  # of the rigid part at the clamp that are looked at
 _OVERLOOKED = 1e-6  # L; how deep they may be in the obstacle
-_MERGES = 0.5  # of the stretch that two places span, by one place that followed them
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -71,13 +70,13 @@ class Walk(Generic[Model]):
         turn = model.obstacle.largest_curvature * model.layout.spacing
         self._sharp = turn > 2 * OF_CURVATURE
         self.snap_off: float | None = None
-        self._second: dict[str, float | None] = {}  # where a second contact begins and ends
+        self._second = SecondContact(model.layout)
         self.doubt: str | None = None
 
     @property
     def events(self) -> dict[str, float | None]:
         """Parameters of the clamp's way at which things happened."""
-        return {"snap_off": self.snap_off, **self._second}
+        return {"snap_off": self.snap_off, **self._second.events}
 
     def go_to(self, target: float) -> None:
         """Follow the branch of equilibria, in smaller steps where it takes them.
@@ -232,50 +231,12 @@ class Walk(Generic[Model]):
 
     def _accept(self, p: float, state: State) -> None:
         if p != self._p:
-            self._note_second(p, state)
+            if self._second.changes(self._state, state):
+                last, close = At(self._p, self._state), self._numerics.smallest_step
+                self._second.locate(last, At(p, state), self._relax, close)
+                self._relax(p, state)  # the model is to be in the state that is gone on from
             self._before = self._p, self._state
         self._p, self._state = p, state
-
-    def _note_second(self, p: float, state: State) -> None:
-        """Find where between the last state and this one a second place begins or ends to touch.
-
-        A snap-off ends both. Two that come so near that links show one place are not noted.
-        """
-        begins = self._touches_twice(state)
-        if begins == self._touches_twice(self._state) or not state.forces:
-            return
-        near, far, low, high = self._p, p, self._state, state
-        while abs(far - near) > self._numerics.smallest_step:
-            middle = (near + far) / 2
-            guess = State((low.angles + high.angles) / 2, high.forces, slope=high.slope)
-            found = self._relax(middle, guess)
-            if not found.settled:
-                break
-            if self._touches_twice(found) == begins:
-                far, high = middle, found
-            else:
-                near, low = middle, found
-        self._relax(p, state)  # the model is to be in the state that is gone on from
-        name = f"second_contact_{'start' if begins else 'end'}"
-        single, both = (np.ptp(self._along(x)) for x in ((low, high) if begins else (high, low)))
-        if single < _MERGES * both and not (begins and name in self._second):
-            self._second[name] = (near + far) / 2
-
-    def _touches_twice(self, state: State) -> bool:
-        layout = self.model.layout
-        if layout.vibrissa.is_straight or len(state.forces) < 2:
-            return False
-        return len(places_after(self._along(state), layout)) > 0
-
-    def _along(self, state: State) -> Floats:
-        """Arc lengths of the loaded contacts; of a link's side where the link begins [L]."""
-        layout = self.model.layout
-        beads, links = len(layout.beads), len(layout.joints)
-        places = (
-            layout.beads[i] if i < beads else layout.joints[(i - beads) % links]
-            for i in state.forces
-        )
-        return np.fromiter(places, float)
 
     def _near_rest(self, p: float) -> State:
         """From the last state on; what stops a short step, a descent decides."""
