@@ -76,7 +76,7 @@ class StationMeans:
         self._stations: list[float] = stations.tolist()
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
-        self.contact, self._second, self._tells = Touches(), Touches(), False
+        self.contact, self._second, self._looks_twice = Touches(), Touches(), False
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(len(names))
         self._losses = 0
@@ -95,7 +95,7 @@ class StationMeans:
 
     def second_contact(self) -> dict[str, float | None]:
         """Where a second contact begins and ends, if that is known; a snap-off ends both."""
-        if not self._tells:
+        if not self._looks_twice:
             return {}
         lag = self.contact.lost - self._second.lost
         both = self.contact.last is not None and lag < _HALF_PERIOD
@@ -127,7 +127,7 @@ class StationMeans:
             self._losses += before.touches
         apart = self.contact.first is not None and not (before.touches and after.touches)
         self.contact.follow(after.time, after.p, after.touches)
-        self._tells = after.twice is not None
+        self._looks_twice = after.twice is not None
         self._second.follow(after.time, after.p, bool(after.twice))
         if self.complete:
             return False
