@@ -77,3 +77,18 @@ def test_the_last_contact_that_is_lost_is_the_snap_off():
     touches = (x > 0.3) & ~((x < 0.42) & (x > 0.4))
     driven(record, x, np.zeros((71, 3)), touches)
     assert record.contact.last == pytest.approx(0.3, abs=0.011)
+
+
+@pytest.mark.parametrize(("lost", "end"), [(0.3, 0.3), (0.0, None)])
+def test_a_second_contact_that_is_lost_with_the_first_has_no_end(lost, end):
+    """It is the snap-off that ends both."""
+    record = StationMeans(np.array([0.5, -0.2]), 0.0)
+    samples = [
+        Step(10 * (0.6 - x), x, np.zeros(3), 0.0 < x < 0.55, lost < x < 0.45)
+        for x in np.linspace(0.6, -0.3, 901).tolist()
+    ]
+    for before, after in pairwise(samples):
+        record.take(before, after)
+    found = record.second_contact()
+    assert found["second_contact_start"] == pytest.approx(0.45, abs=2e-3)
+    assert found["second_contact_end"] == (end if end is None else pytest.approx(end, abs=2e-3))

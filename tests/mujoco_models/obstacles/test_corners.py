@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from analytic import CLAMP_READINGS, Beam, Case, Sweep, mesh_section, polygon, solve_sweep
 from compare import compare
 from mujoco_models import Settings, available_beams, simulate_sweep
+from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.sweep.sweep import set_out
 
@@ -166,6 +167,20 @@ def test_a_link_that_cuts_a_corner_off_is_seen():
     assert obstacle.is_cut(np.array([[0.31, 0.3], [0.2, 0.6]]))  # into the body
     assert obstacle.is_cut(np.array([[0.4, 0.45], [0.2, 0.39]]))  # across the corner
     assert not obstacle.is_cut(np.array([[0.4, 0.35], [0.2, 0.39]]))  # below it
+
+
+def test_a_place_is_outside_of_the_object_whose_edge_it_meets():
+    """Before another one's corner it may well be."""
+    low = np.array([(-0.6, 0.9), (0.0, 0.35), (0.6, 0.9)])
+    parts = [
+        Corners.of(low + [x, 0], upright(low + [x, 0], 0.1), 1e-3, (False, False)) for x in (0, 3)
+    ]
+    both = Corners.of_all(parts)
+    edge = int(np.flatnonzero(both.of_object == 0)[0])
+    inside, below = np.array([0.0, 0.7, 0.0]), np.array([0.0, 0.3, 0.0])
+    assert not parts[0].in_front(inside, 0) and not both.in_front(inside, edge)
+    assert both.in_front(below, edge)
+    assert both.in_front(inside, len(parts[0]))  # of the other
 
 
 def test_fine_polygons_keep_their_beads():

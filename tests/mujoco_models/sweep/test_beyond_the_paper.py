@@ -133,6 +133,14 @@ def test_a_vibrissa_curved_towards_the_object_touches_it_twice(profile, natural)
             assert there is None or abs(there - events[event]) < 5e-4
 
 
+def test_places_so_near_that_links_show_one_have_no_events():
+    """Past a circle of radius 1 a curvature of 1.2 makes two contacts that begin side by side."""
+    case = Case(Beam(natural_curvature=1.2), circle(1.0, lowest=(0, 0.4)), Sweep(40))
+    ends = {"second_contact_start", "second_contact_end"}
+    assert ends <= solve_sweep(case).provenance["events"].keys()
+    assert not ends & simulate_sweep(case, Settings(segments=20)).provenance["events"].keys()
+
+
 def test_a_vibrissa_that_lies_down_on_its_other_side():
     """The closed form's contact there is MuJoCo's: every station of both, to second order."""
     case = Case(Beam(natural_curvature=1.0), named_case("catenary").profile, Sweep(40))
