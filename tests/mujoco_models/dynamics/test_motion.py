@@ -19,6 +19,7 @@ from analytic import (
 from compare import compare
 from mujoco_models import DivergedError, Motion, Settings, simulate_motion
 from mujoco_models.dynamics.model import MovingModel
+from mujoco_models.model.lookout import Lookout
 
 CASE = replace(named_case("catenary"), sweep=Sweep(60))
 # Smooth and coarse: many steps in little time.
@@ -71,6 +72,22 @@ def test_two_objects_are_touched_at_once(first):
     largest = np.nanmax(exact.values("second_contact_force"))
     off = exact.values("second_contact_force") - moved.values("second_contact_force")
     assert np.abs(off[both]).max() < 0.1 * largest
+
+
+def test_each_object_shows_what_its_own_contact_needs(monkeypatch):
+    found = []
+
+    def follow(lookout, contacts):
+        clearance = [lookout._obstacle.clearance(point)[0] for point in contacts.point]
+        found.append((lookout, max(clearance, default=None)))
+
+    monkeypatch.setattr(Lookout, "follow_contact", follow)
+    objects = [circle(0.1, (0.0, 0.7)), circle(0.3, (-0.25, 0.35))]
+    case = Case(Beam(radius=0.002), objects, Sweep(30, 0.11, -0.12))
+    simulate_motion(case, Motion(speed=0.05), SMOOTH_MESH)
+    touched = [(lookout, x) for lookout, x in found if x is not None]
+    assert len({lookout for lookout, _ in touched}) == 2
+    assert max(x for _, x in touched) < 0.01  # the other object is 0.07 L off
 
 
 def test_a_sweep_in_motion_has_a_row_a_station():
