@@ -296,6 +296,16 @@ def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
     assert np.nanmax(rod_residuals(readings)) < 1e-10
 
 
+def test_what_sticks_at_first_contact_is_never_called_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it comes loose, and whether it touches then, is not known."""
+    monkeypatch.setattr(Rubbing, "_begin", lambda *_: None)
+    body, path = sphere(0.5, (0, 1, 0)), FootPath([[1.2, 0.1], [-1.2, 0.1]], stations=40)
+    table = _swept(body, path, 0.3).table
+    touched = table["travel"] > 0.75
+    assert (table["status"][touched] == "sticks").all()
+    assert (table["status"][table["travel"] < 0.7] == "ok").all()
+
+
 def test_edges_without_a_radius_and_odd_numbers_are_refused() -> None:
     cube = polyhedron([(x, y, z) for x in (-1, 1) for y in (0.6, 2) for z in (-1, 1)])
     path = FootPath([[1.4, 0.3], [-0.2, 0.1]])
