@@ -1,5 +1,6 @@
 """Friction in space: rows of an own integration, limits, and Coulomb's law step by step."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -280,6 +281,14 @@ def test_past_a_polyhedron_it_is_at_rest_and_slides_against_friction(seed: int) 
             cosine = moved @ mean / size / np.linalg.norm(mean)
             assert cosine < -1 + 1e-4
     assert found > 3 or not tips.any()
+
+
+def test_past_an_edge_it_is_at_rest_before_it_goes_on() -> None:
+    """An edge is met to 1e-12 L: a state so far from rest can be the start of no panel."""
+    case = _solid(43)
+    readings = solve_space(replace(case, path=replace(case.path, stations=40)))
+    assert set(readings.table["status"]) <= {"ok", "slipped off"}
+    assert [e["kind"] for e in readings.provenance["events"]][-1] == "slip-off"
 
 
 def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
