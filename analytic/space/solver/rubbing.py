@@ -31,7 +31,7 @@ _CLOSE = 1e-14  # of a panel, to which events are enclosed
 _STEEP = 1e3
 _AHEAD = 1e-8  # of the state's vector, past an edge
 _MARKED = 1e-12  # L, to a corner of the way
-_ON = 1e-12  # L; a point that is farther from the body's nearest one is on another face or edge
+_SAME = 1e-12  # L; a point that is farther from the body's nearest one is on another face or edge
 _STILL = 1e-9  # of a speed: a contact that has just begun to slide hardly does
 
 
@@ -153,7 +153,7 @@ class Rubbing(Walker[Rubbed]):
             ahead = done.beyond(stretch.end + _AHEAD / done.reach)
             scene = self._on(self._scene.body.nearest(ahead[:3], APART))
             state = state_of(scene, state.vector, state.contact.tangent)
-            law = Law(leg, self._friction, sticks)  # the edge was found to `_ON` only
+            law = Law(leg, self._friction, sticks)  # the edge was found to `_SAME` only
             state = law.settled(scene, state, BY_TRAVEL, state.travel) or state
         reach = min(done.reach * min(_change(done), _LONGER), _LONGEST)
         if event is not None and not self._scene.body.smooth:
@@ -233,7 +233,7 @@ class Rubbing(Walker[Rubbed]):
             margins["stick"] = -float(velocity @ state.rub) / size
         if not self._scene.body.smooth:
             nearest = self._scene.body.nearest(contact.on_parallel, APART).point
-            margins["edge"] = _ON - float(np.linalg.norm(nearest - contact.spot.point))
+            margins["edge"] = _SAME - float(np.linalg.norm(nearest - contact.spot.point))
         ahead = self._way.marks[self._way.marks > found.law.leg.travel]
         if len(ahead) > 1:
             margins["corner"] = float(ahead[0]) - state.travel
