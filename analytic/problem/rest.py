@@ -132,8 +132,9 @@ def first_on_way(
     known = [one for one in found if one is not None and reach[0] <= one.t <= reach[1]]
     if not known:
         allowed = f"such that it first touches the lower side of the object ({contour.label})"
-        what = "one on which the vibrissa does not"
-        raise InputError("way of the clamp", what, allowed, "turn it")
+        what = "one that comes to its upper side or its end"
+        remedy = "move the foot farther on under the object"
+        raise InputError("way of the clamp", what, allowed, remedy)
     return max(known, key=lambda one: one.p)
 
 

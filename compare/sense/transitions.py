@@ -36,8 +36,8 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     moment = readings.values("moment_z")
     if moving:
         found["first_contact"] = _recorded(readings, at)
-    elif touching[0] > 0:
-        found["first_contact"] = _zero(at, moment, touching[:2], touching[0] - 1, touching[0])
+    elif (free := np.flatnonzero(judged.phase[: touching[0]] == "free")).size:
+        found["first_contact"] = _zero(at, moment, touching[:2], free[-1], touching[0])
     begin, end = _best_stretch(np.where(judged.phase[touching] == "tangent", 1, -1))
     inside = touching[begin:end]
     before, after = touching[:begin], touching[end:]
@@ -52,16 +52,18 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
     """Where along the sweep the snap-off is, and how far it may be off.
 
     The source's own value where it located one; else half-way between the last station in contact
-    and the free one after it, give or take half a step. None if the sweep ends in contact.
+    and the next that is free, give or take half of what is between. None if the sweep ends in contact.
     """
     if readings.snap_off is not None:
         return readings.snap_off, 0.0
     at = readings.running_values
     touching = np.flatnonzero(np.isin(judged.phase, ("tip", "tangent")))
-    if touching.size == 0 or touching[-1] + 1 == len(at):
+    free = np.flatnonzero(judged.phase == "free")
+    free = free[free > touching[-1]] if touching.size else touching
+    if free.size == 0:
         return None, 0.0
-    last, free = at[touching[-1]], at[touching[-1] + 1]
-    return float(last + free) / 2, float(abs(last - free)) / 2
+    one, other = at[touching[-1]], at[free[0]]
+    return float(one + other) / 2, float(abs(one - other)) / 2
 
 
 def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]] | None:

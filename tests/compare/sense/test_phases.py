@@ -49,6 +49,23 @@ def test_untrusted_stations_have_no_phase():
     assert reconstruct(exact)["phase"][20] == exact.table["phase"][20]
 
 
+def test_untrusted_stations_beside_contact_move_neither_end_of_it():
+    """The first one was called 0.08 rad apart of two sweeps that touch alike."""
+    case = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(stations=60))
+    exact, other = solve_sweep(case), solve_sweep(case)
+    touching = np.flatnonzero(exact.table["phase"] != "free")
+    near = [*touching[:2], *touching[-2:]]
+    other.table.loc[near, "status"] = "unsettled"
+    other.table.loc[near, "phase"] = "tip"
+    other.provenance["events"]["snap_off"] = None
+    found = compare(exact, other)
+    first, last = found.events["first_contact"], found.events["snap_off"]
+    step = float(np.abs(np.diff(exact.values("foot_x"))).max())
+    assert abs(first.difference) < step / 2
+    assert last.uncertainty == pytest.approx(1.5 * step) and abs(last.difference) < 1.5 * step
+    assert not any("first_contact" in f or "snap" in f for f in map(str, found.failures))
+
+
 @pytest.mark.parametrize("apart", [1e-16, 1e-12, 1e-3])
 def test_two_values_that_are_one_to_rounding_are_no_fault(apart):
     """No polynomial goes through them; the limit is between the two stations all the same."""
