@@ -52,7 +52,7 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
     """Where along the sweep the snap-off is, and how far it may be off.
 
     The source's own value where it located one; else half-way between the last station in contact
-    and the next that is free, give or take half of what is between. None if the sweep ends in contact.
+    and the next free one, give or take half of that way. None if the sweep ends in contact.
     """
     if readings.snap_off is not None:
         return readings.snap_off, 0.0

@@ -172,9 +172,8 @@ def test_a_link_that_cuts_a_corner_off_is_seen():
 def test_a_place_is_outside_of_the_object_whose_edge_it_meets():
     """Before another one's corner it may well be."""
     low = np.array([(-0.6, 0.9), (0.0, 0.35), (0.6, 0.9)])
-    parts = [
-        Corners.of(low + [x, 0], upright(low + [x, 0], 0.1), 1e-3, (False, False)) for x in (0, 3)
-    ]
+    moved = [low + np.array([x, 0]) for x in (0, 3)]
+    parts = [Corners.of(place, upright(place, 0.1), 1e-3, (False, False)) for place in moved]
     both = Corners.of_all(parts)
     edge = int(np.flatnonzero(both.of_object == 0)[0])
     inside, below = np.array([0.0, 0.7, 0.0]), np.array([0.0, 0.3, 0.0])
