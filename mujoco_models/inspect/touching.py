@@ -11,6 +11,9 @@ from mujoco_models.inspect.measured import Geom
 from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
+from mujoco_models.model.solref import from_solref, pushes
+
+_SOFTEST = 1e-300  # force/length, of a contact whose stiffness is none to rounding
 
 
 def touching(
@@ -80,7 +83,10 @@ def _geom(
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
     places, aside = _along(nodes, piece.ends)
     start, end = sorted(places.tolist())
-    stiffness, time_constant, decay = _pushes(model, stated("solref"), stated("solimp"), weight)
+    solref, solimp = stated("solref").tolist(), stated("solimp").tolist()
+    stiffness, decay = np.inf, pushes(solref, solimp, model.opt.timestep)[1]
+    if weight:
+        stiffness = from_solref(solref, solimp, weight, timestep=model.opt.timestep)[0] or _SOFTEST
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
     return Geom(
@@ -95,7 +101,7 @@ def _geom(
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
         weight=weight,
         stiffness=stiffness,
-        time_constant=time_constant,
+        time_constant=solref[0] if solref[0] > 0 else np.nan,
         decay=decay,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
@@ -115,24 +121,6 @@ def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
     off = np.linalg.norm(points[:, None] - starts - on[..., None] * units, axis=-1)
     best = (np.arange(len(points)), np.argmin(off, axis=1))
     return np.asarray((np.cumsum(lengths) - lengths + on)[best]), np.asarray(off[best])
-
-
-def _pushes(
-    model: mujoco.MjModel, solref: Floats, solimp: Floats, weight: float
-) -> tuple[float, float, float]:
-    """Force over penetration at rest, the time constant if solref states one, and the damper's.
-
-    The force is k/((1 - d) A) times the depth, with MuJoCo's k, impedance d and the body's inverse
-    mass A; see MuJoCo's documentation, "Solver parameters".
-    """
-    impedance = min(float(solimp[0]), 0.9999)
-    time_constant, ratio = solref.tolist()
-    if time_constant > 0:
-        taken = max(time_constant, 2 * model.opt.timestep)
-        stiffness, decay = 1 / (taken * ratio) ** 2, 2 / (impedance * taken)
-    else:
-        stiffness, decay, time_constant = -time_constant, -ratio, np.nan
-    return float(stiffness / ((1 - impedance) * weight)) if weight else np.inf, time_constant, decay
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:

@@ -7,6 +7,7 @@ from analytic.problem.errors import InputError
 
 _LARGEST = 0.9999  # MuJoCo's own limits of an impedance
 _LEAST = 1e-4
+_SHORTEST = 1e-15**0.5  # its smallest number is that of a square
 
 
 def to_solref(
@@ -81,24 +82,31 @@ def from_solref(
     damping : float
         Force over speed of approach [N s/m].
     """
-    first, second = solref[:2]
-    d = _impedance(list(solimp), depth)
-    largest = min(max(solimp[1], _LEAST), _LARGEST)
-    if first > 0:
-        constant = max(first, 2 * timestep)
-        k, b = 1 / (largest * constant * second) ** 2, 2 / (largest * constant)
-    else:
-        k, b = -first / largest**2, -second / largest
+    d = impedance(solimp, depth)
+    k, b = pushes(solref, solimp, timestep)
     yielding = (1 - d) * inverse_mass
     return k * d**2 / yielding, b * d / yielding
 
 
-def _impedance(solimp: list[float], depth: float) -> float:
+def pushes(
+    solref: Sequence[float], solimp: Sequence[float], timestep: float
+) -> tuple[float, float]:
+    """MuJoCo's k over its impedance, and its b: of a contact's reference acceleration."""
+    first, second = solref[:2]
+    largest = min(max(solimp[1], _LEAST), _LARGEST)
+    if first <= 0:
+        return -first / largest**2, -second / largest
+    constant = largest * max(first, 2 * timestep)
+    rate = 1 / max(constant * second, _SHORTEST)
+    return rate * rate, 2 / constant
+
+
+def impedance(solimp: Sequence[float], depth: float) -> float:
     """MuJoCo's d at a depth: a power of it up to the midpoint, and the same turned round after."""
     low, high = (min(max(x, _LEAST), _LARGEST) for x in solimp[:2])
     width, middle, power = (*solimp[2:], *(1e-3, 0.5, 2.0)[len(solimp) - 2 :])
     x = min(depth / width, 1.0) if width > 0 else 1.0
-    if power == 1:
+    if power == 1 or x in (0, 1):
         share = x
     elif x <= middle:
         share = x**power / middle ** (power - 1)

@@ -409,6 +409,28 @@ def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     assert measured(tmp_path, both, geoms="other-*").foot == "other-foot"
 
 
+def _softest(tmp_path, solref, solimp):
+    path = Chain().write(tmp_path)
+    text = path.read_text()
+    stands = 'solref="0.02 1" solimp="0.98 0.98 0.001"'
+    assert stands in text
+    path.write_text(text.replace(stands, f'solref="{solref}" solimp="{solimp}"'))
+    return min(geom.stiffness for geom in inspect_model(path).geoms)
+
+
+def test_an_impedance_that_grows_with_the_depth_softens_the_contact(tmp_path):
+    """MuJoCo divides by the square of the largest, at any depth."""
+    even = _softest(tmp_path, "0.02 1", "0.9 0.9 0.001")
+    grows = _softest(tmp_path, "0.02 1", "0.9 0.95 0.001")
+    assert grows / even == pytest.approx((0.9 / 0.95) ** 2)
+
+
+@pytest.mark.parametrize("solref", ["0.02 1e300", "0.02 0", "1e300 1", "-1e300 -1", "0 0"])
+@pytest.mark.parametrize("solimp", ["0.9 0.95 0.001", "0 0 0", "1 1 1e-3 0.5 1e300"])
+def test_contacts_as_nobody_would_set_them_have_a_stiffness(tmp_path, solref, solimp):
+    assert _softest(tmp_path, solref, solimp) > 0
+
+
 def test_what_is_no_model(tmp_path):
     (tmp_path / "x.xml").write_text("<mujoco><worldbody></mujoco>")
     for path in (tmp_path / "x.xml", tmp_path / "missing.xml", tmp_path):
