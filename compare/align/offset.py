@@ -10,6 +10,7 @@ from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.provenance import recorded_contours
+from compare.align.jumps import jumps
 from compare.align.stations import interpolant
 from compare.sense.noise import scales
 from compare.sense.phases import Classification
@@ -169,7 +170,9 @@ class _Curve:
         values = np.stack([reference.values(n) / size for n, size in scales(reference).items()])
         touching = np.isin(judged.phase, ("tip", "tangent"))
         places = locate_transitions(reference, judged)
-        cuts = [c for c in (places["phase_b_start"], places["phase_b_end"]) if c is not None]
+        limits = [places[name][0] for name in ("phase_b_start", "phase_b_end")]
+        after = jumps(x, values, np.zeros(1, dtype=int))
+        cuts = [*(x[after] + x[after + 1]) / 2, *(limit for limit in limits if limit is not None)]
         piece = np.searchsorted(np.sort(cuts), x)
         last = np.flatnonzero(touching)[-1] if touching.any() else 0
         lets_go = last + 1 < len(x)

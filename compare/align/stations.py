@@ -11,6 +11,8 @@ from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FOOT
+from compare.align.jumps import beside, jumps, sides
+from compare.sense.noise import scales
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
@@ -32,7 +34,7 @@ class Alignment:
     # (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
     # itself); ``dropped`` (zeros where the reference is in contact, between loads of its own);
     # ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on both sides,
-    # so there is nothing to interpolate); ``outside`` (beyond the reference).
+    # or a jump between them: there is nothing to interpolate); ``outside`` (beyond the reference).
     counts: dict[str, int]
 
     def __repr__(self) -> str:
@@ -48,10 +50,11 @@ def align(
     candidate_phase: Classification,
     dropped: Booleans,
 ) -> Alignment:
-    """Pair the candidate's stations with the reference, never across a transition or snap-off.
+    """Pair the candidate's stations with the reference, never across a transition or a jump.
 
     A reference station at the same place is taken as it is. Otherwise the reference is
-    interpolated by a cubic spline through one uninterrupted stretch of one phase.
+    interpolated by a cubic spline through one uninterrupted stretch of one phase. Stations
+    beside a jump from corner to corner are left out, if they are as on its other side.
     """
     length = reference.beam.length
     size, _ = reference.running_unit
@@ -69,8 +72,15 @@ def align(
     nearest = order[np.searchsorted(between, x, side="right")]
     same = np.abs(x_ref[nearest] - x) <= _SAME_STATION * size
 
+    scale = np.array([*scales(reference).values()])[:, None]
+    values, own = (
+        np.stack([sweep.values(name) for name in CLAMP_READINGS])
+        for sweep in (reference, candidate)
+    )
     phase = reference_phase.phase
     starts = np.flatnonzero(np.append(True, phase[1:] != phase[:-1]))
+    after = jumps(x_ref, values / scale, starts)
+    starts = np.union1d(starts, after + 1)
     stretch = np.searchsorted(starts, nearest, side="right") - 1
     covering = np.where(same, stretch, _covering(x_ref, starts, x))
     state = np.where(same, phase[nearest], np.where(covering < 0, "", phase[starts[covering]]))
@@ -86,6 +96,21 @@ def align(
         "one_free": (state == "free") | idle,
     }
     reasons = np.select([*why_not.values()], [*why_not], "compared")
+    there, ends = values[:, nearest], np.append(starts, len(x_ref))
+    between_two = np.flatnonzero((reasons == "compared") & ~same)
+    for group in pd.Series(between_two).groupby(covering[between_two]).indices.values():
+        here = between_two[group]
+        one = covering[here[0]]
+        on = slice(ends[one], ends[one + 1])
+        there[:, here] = interpolant(x_ref[on], values[:, on])(x[here])
+    off = (np.abs(own - there) / scale).max(axis=0)
+    for i in after.tolist():
+        near = np.flatnonzero((reasons == "compared") & beside(x, x_ref[i : i + 2], size))
+        for covered, beyond in sides(i, starts, len(x_ref)):
+            here = near[covering[near] == covered]
+            other = interpolant(x_ref[beyond], values[:, beyond])(x[here])
+            jumped = (np.abs(own[:, here] - other) / scale).max(axis=0) < off[here]
+            reasons[here[jumped]] = "between_phases"
     compared = reasons == "compared"
     columns = {
         "station": np.flatnonzero(compared),
@@ -93,14 +118,6 @@ def align(
         "phase": state[compared],
         "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
     }
-    values = np.stack([reference.values(name) for name in CLAMP_READINGS])
-    there, ends = values[:, nearest], np.append(starts, len(x_ref))
-    between_two = np.flatnonzero(compared & ~same)
-    for group in pd.Series(between_two).groupby(covering[between_two]).indices.values():
-        here = between_two[group]
-        one = covering[here[0]]
-        on = slice(ends[one], ends[one + 1])
-        there[:, here] = interpolant(x_ref[on], values[:, on])(x[here])
     for name, row in zip(CLAMP_READINGS, there, strict=True):
         columns[f"{name}_reference"] = row[compared]
         columns[f"{name}_candidate"] = candidate.values(name)[compared]

@@ -70,8 +70,8 @@ def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAll
     for seed in range(_REPLICAS):
         noisy = with_noise(reference, level, seed)
         judged = classify(noisy)
-        for name, found in locate_transitions(noisy, judged).items():
-            expected = calm[name]
+        for name, (found, _) in locate_transitions(noisy, judged).items():
+            expected, _ = calm[name]
             if found is not None and expected is not None:
                 moved[name].append(found - expected)
         known = judged.phase != ""

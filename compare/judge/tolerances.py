@@ -23,6 +23,7 @@ KINDS = ("rms", "max")
 _READINGS_IN_PHASES = [f"{name}.{phase}" for name in CLAMP_READINGS for phase in CONTACT_PHASES]
 _PEAK = 10  # times the rms, at the worst station
 _QUASI_STATIC = 1e-2  # rms; flexural rigidity 5 % off is 2.7e-2 or more in all named cases
+_BETWEEN = 2  # stations, one at each end of Phase B
 _CORNER = 0.2  # rad; what a smooth contour of 181 points turns by at none of them
 
 
@@ -164,7 +165,7 @@ class Tolerances(Limits):
         "into any error of theirs",
     )
     phase_agreement: float = Limit(
-        0.99, "two stations of 200 may fall between the two models' transitions"
+        0.99, "two stations of 200 may fall between the two models' transitions, and of fewer two"
     )
     transition: float = Limit(1e-2, "less than half a station of the default sweep")
     snap_off: float = Limit(3e-3, "the rms limit times the way in the last phase")
@@ -192,6 +193,10 @@ class Tolerances(Limits):
         """
         defaults = self.usual()
         suited = self if is_smooth_model(candidate) else self.by_convention()
+        few = 1 - _BETWEEN / max(int(candidate.trusted.sum()), 1)
+        if "phase_agreement" in defaults and few < suited.phase_agreement:
+            agreement = Limit(max(few, 0.0), _reason(suited.phase_agreement))
+            suited = replace(suited, phase_agreement=agreement)
         rate = Rate.of(candidate)
         if rate is None:
             return suited

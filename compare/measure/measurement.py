@@ -166,17 +166,20 @@ def measure(
         judged["candidate"],
         records["candidate"].dropped,
     )
-    ends = snap_off(reference, judged["reference"]), snap_off(candidate, judged["candidate"])
-    snap = Occurrence(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
+
+    def at(one: tuple[float | None, float], other: tuple[float | None, float]) -> Occurrence:
+        return Occurrence(one[0], other[0], one[1] + other[1] + shift.uncertainty)
+
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
+    snap = at(*(snap_off(sweep, judged[which]) for which, sweep in sweeps.items()))
     one, other = (locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items())
-    events = {name: Occurrence(one[name], other[name], shift.uncertainty) for name in TRANSITIONS}
+    events = {name: at(one[name], other[name]) for name in TRANSITIONS}
     twice = second_contacts(reference), second_contacts(candidate)
     if twice[0] and twice[1]:
-        for name, (place, off) in twice[0].items():
-            beside, off_by = twice[1][name]
-            second = Occurrence(place, beside, shift.uncertainty + off + off_by)
-            events |= {} if place is None is beside else {name: second}
+        seconds = {name: at(place, twice[1][name]) for name, place in twice[0].items()}
+        events |= {
+            name: one for name, one in seconds.items() if not one.reference is one.candidate is None
+        }
     return Measurement(
         reference,
         candidate,

@@ -15,36 +15,45 @@ _TINY = 1e-290  # values that differ by less cannot be scaled for the fit
 _ALIKE = 1e-9  # of the span of all: two values that are nearer to each other are one
 
 
-def locate_transitions(readings: Readings, judged: Classification) -> Mapping[str, float | None]:
-    """Places along the sweep of the transitions; None where a transition does not occur.
+def locate_transitions(
+    readings: Readings, judged: Classification
+) -> Mapping[str, tuple[float | None, float]]:
+    """Places along the sweep of the transitions, and how far they may be off.
+
+    None is the place of a transition that does not occur.
 
     Phase B is the one stretch that agrees best with the judged phases, so that single stations that
-    noise put on the wrong side move nothing. At its ends the criterion (26), which is zero inside,
-    is extrapolated to zero from outside, and the shortfall of the contact, which is zero outside,
-    from inside; the limit is half-way between the two results. First contact is where the clamp
-    moment, extrapolated from the first loaded stations, vanishes. In motion, where the vibrissa's
-    mass loads the clamp without contact, it is where the source recorded it, and stations before it
-    and behind the snap-off show no phase.
+    noise put on the wrong side move nothing; where another one does nearly, so far it may be off.
+    At its ends the criterion (26), which is zero inside, is extrapolated to zero from outside, and
+    the shortfall of the contact, which is zero outside, from inside; the limit is half-way between
+    the two results, which differ where a contact jumps. First contact is where the clamp moment,
+    extrapolated from the first loaded stations, vanishes. In motion, where the vibrissa's mass
+    loads the clamp without contact, it is where the source recorded it, and stations before it and
+    behind the snap-off show no phase.
     """
     at = readings.running_values
     moving = "motion" in readings.provenance
     loaded = np.isin(judged.phase, ("tip", "tangent"))
     touching = np.flatnonzero(loaded & _in_contact(readings) if moving else loaded)
-    found: dict[str, float | None] = dict.fromkeys(TRANSITIONS)
+    found: dict[str, tuple[float | None, float]] = dict.fromkeys(TRANSITIONS, (None, 0.0))
     if touching.size < 2:
         return found
     moment = readings.values("moment_z")
     if moving:
-        found["first_contact"] = _recorded(readings, at)
+        found["first_contact"] = _recorded(readings, at), 0.0
     elif (free := np.flatnonzero(judged.phase[: touching[0]] == "free")).size:
-        found["first_contact"] = _zero(at, moment, touching[:2], free[-1], touching[0])
-    begin, end = _best_stretch(np.where(judged.phase[touching] == "tangent", 1, -1))
+        found["first_contact"] = _zero(at, moment, touching[:2], free[-1], touching[0]), 0.0
+    votes = np.where(judged.phase[touching] == "tangent", 1, -1)
+    begin, end = _best_stretch(votes)
     inside = touching[begin:end]
     before, after = touching[:begin], touching[end:]
+    begins, ends = (at[touching[rivals]] for rivals in _rivals(votes, begin, end))
     if inside.size and before.size:
-        found["phase_b_start"] = _limit(at, judged, before[-_FIT:], inside[:_FIT])
+        place, off = _limit(at, judged, before[-_FIT:], inside[:_FIT])
+        found["phase_b_start"] = place, max(off, float(np.abs(begins - at[inside[0]]).max()))
     if inside.size and after.size:
-        found["phase_b_end"] = _limit(at, judged, after[:_FIT], inside[-_FIT:])
+        place, off = _limit(at, judged, after[:_FIT], inside[-_FIT:])
+        found["phase_b_end"] = place, max(off, float(np.abs(ends - at[inside[-1]]).max()))
     return found
 
 
@@ -112,12 +121,31 @@ def _best_stretch(votes: Integers) -> tuple[int, int]:
     return int(np.argmin(sums[: end + 1])), end
 
 
-def _limit(at: Floats, judged: Classification, tip: Integers, tangent: Integers) -> float:
+def _rivals(votes: Integers, begin: int, end: int) -> tuple[Integers, Integers]:
+    """First and last stations of stretches that other stations might have preferred.
+
+    Past corners there are several; each change between one end and another may be a station off.
+    """
+    sums = np.append(0, np.cumsum(votes))
+    changes = np.append(0, np.cumsum(votes[1:] != votes[:-1]))
+    best = sums[end] - sums[begin]
+    first = np.flatnonzero(votes == 1)
+    from_here = np.maximum.accumulate(sums[::-1])[::-1][first + 1] - sums[first]
+    to_here = sums[first + 1] - np.minimum.accumulate(sums)[first]
+    return tuple(
+        first[scores >= best - np.abs(changes[first] - changes[chosen])]
+        for scores, chosen in ((from_here, begin), (to_here, end - 1))
+    )
+
+
+def _limit(
+    at: Floats, judged: Classification, tip: Integers, tangent: Integers
+) -> tuple[float, float]:
     """A limit of Phase B between the neighbouring stations `tip` and `tangent`."""
     ends = (tip[-1], tangent[0]) if tip[-1] < tangent[0] else (tip[0], tangent[-1])
     outside = _zero(at, judged.criterion, tip, *ends)
     inside = _zero(at, judged.shortfall, tangent, *ends)
-    return float(outside + inside) / 2
+    return (outside + inside) / 2, abs(outside - inside) / 2
 
 
 def _zero(at: Floats, values: Floats, stations: Integers, one: int, other: int) -> float:

@@ -41,7 +41,7 @@ def _row(case: str, sweep: Readings, level: float, seeds: Sequence[int]) -> dict
         noisy = with_noise(sweep, dict.fromkeys(CLAMP_READINGS, level), seed) if level else sweep
         judged = classify(noisy)
         counts += confusion(judged, sweep).to_numpy()
-        for name, found in locate_transitions(noisy, judged).items():
+        for name, (found, _) in locate_transitions(noisy, judged).items():
             expected = true[name]
             if expected is not None and found is not None:
                 off[name].append(abs(found - expected) / step)

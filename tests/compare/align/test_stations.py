@@ -8,6 +8,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from analytic import CLAMP_READINGS, Beam, InputError, Readings
+from compare.align.jumps import jumps
 from compare.align.stations import Alignment, align, check_same_way, interpolant
 from tests.compare.synthetic import BEAM, classified
 
@@ -149,6 +150,58 @@ def test_the_same_station_is_one_to_a_billionth_of_the_length():
         x = X.copy()
         x[last] -= apart * BEAM.length
         assert (last in paired(made(x)).table["station"].to_numpy()) == compared
+
+
+JUMPS_AT = -0.2  # in the last tip phase, where a contact goes from corner to corner
+
+
+def jumping(x: np.ndarray, place: float = JUMPS_AT, **columns) -> Readings:
+    """The same with a jump within a phase."""
+    readings = made(x, **columns)
+    for name in CLAMP_READINGS:
+        readings.table[name] += np.where((x < place) & (x > BORDERS[-1]), 1.0, 0.0)
+    return readings
+
+
+@pytest.mark.parametrize("stations", [40, 300])
+def test_nothing_is_interpolated_over_a_jump_within_a_phase(stations):
+    x = np.linspace(1.19, -0.79, stations)
+    found = paired(jumping(x), jumping(X))
+    table = found.table[found.table["phase"] != "free"]
+    for name in CLAMP_READINGS:
+        np.testing.assert_allclose(
+            table[f"{name}_reference"], table[f"{name}_candidate"], rtol=0, atol=2e-3
+        )
+    at = table["at"].to_numpy()
+    assert ((at > JUMPS_AT - 0.3) & (at < JUMPS_AT + 0.1)).sum() >= stations / 10
+
+
+def test_a_station_that_has_jumped_a_little_early_is_left_out_and_no_other():
+    """That of a sweep which jumps two stations early is compared, and is as far off as it is."""
+    x = np.sort(np.append(X, JUMPS_AT + 1e-3))[::-1]  # of both sweeps, just before the jump
+    reference = jumping(x)
+    before = int(np.flatnonzero(x == JUMPS_AT + 1e-3)[0])
+    found = paired(jumping(x, JUMPS_AT + 2e-3), reference)
+    assert before not in found.table["station"].to_numpy()
+    all_but_one = (reference.table["phase"] != "free").sum() - 1
+    assert found.counts["compared"] == all_but_one
+    early = paired(jumping(x, JUMPS_AT + 0.12), reference).table
+    off = (early["force_x_candidate"] - early["force_x_reference"]).abs()
+    assert (off > 0.5).sum() == 2 and before not in early["station"].to_numpy()
+
+
+def test_where_readings_jump_or_bend():
+    x = np.linspace(1, 0, 60)
+    smooth, none = np.sqrt(x + 0.02)[None], np.zeros(1, dtype=int)  # as before a snap-off
+    assert jumps(x, smooth, none).size == 0
+    noise = np.random.default_rng(1).normal(0, 0.02, (3, 60))
+    assert jumps(x, np.sin(x) + noise, none).size == 0
+    steps = np.where(x < x[30], 0.3, 0.0) + np.where(x < x[33], -0.5, 0.0)
+    assert jumps(x, np.sin(x) + steps[None], none).tolist() == [30, 33]
+    assert jumps(x, np.sin(x) + steps[None], np.array([0, 31])).tolist() == [33]
+    bent = np.abs(x - (x[40] + x[41]) / 2)[None] * 3
+    assert jumps(x, bent, none).tolist() == [40]
+    assert jumps(x[:2], smooth[:, :2], none).size == 0
 
 
 def test_sweeps_that_have_nothing_in_common():
