@@ -85,7 +85,7 @@ class Model:
         h, t1 = self.length / self.links, self.period
         # As hard in any unit of time; MuJoCo's defaults are so soft that they hold little.
         loss = f'frictionloss="{self.loss * self.rigidity / self.length:.8g}"'
-        loss = f'{loss} solreffriction="-1 {-1e5 / t1:.8g}"' if self.loss else ""
+        loss = f'{loss} solreffriction="-1 {-1e7 / t1:.8g}"' if self.loss else ""
         hard = f'solreflimit="{-3e4 / t1**2:.8g} {-300 / t1:.8g}"' if self.limit else ""
         held = f"{self.limit} {hard} {loss}"
         pull = self.weight * self.rigidity / (self.mass * self.length**2)
