@@ -39,6 +39,7 @@ class Sensed:
     # False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
     feels_contacts: bool
     cutoff: float  # the largest reading that it gives; infinite if it has no such limit
+    late: float = 0.0  # by its own delay, and the time from one reading to the next
 
 
 @dataclass(frozen=True, eq=False)

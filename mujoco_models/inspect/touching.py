@@ -1,16 +1,22 @@
 """What of a user's vibrissa can touch an object: geoms, or the edges of a flex."""
 
+import math
 from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
 import mujoco
 import numpy as np
+from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from mujoco_models.inspect.measured import Geom
 from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
+from mujoco_models.model.solref import from_solref, impedance_at
+
+_DEFAULT = (0.02, 1.0)
+_NOTHING = 1e-200
 
 
 def touching(
@@ -19,10 +25,14 @@ def touching(
     data: mujoco.MjData,
     frame: tuple[Floats, Floats],
     probe: Probe | None,
+    force: float,
 ) -> tuple[Geom, ...]:
-    """All that can touch, from the clamp to the tip, by its nodes and the axes of the sweep."""
+    """All that can touch, from the clamp to the tip, by its nodes and the axes of the sweep.
+
+    How stiff that is, counts under a force.
+    """
     return tuple(
-        _geom(model, piece, frame, probe)
+        _geom(model, piece, frame, probe, force)
         for piece in (
             _links(model, parts, data) if parts.rod is None else _edges(model, parts.rod, data)
         )
@@ -67,7 +77,11 @@ def _edges(model: mujoco.MjModel, rod: Rod, data: mujoco.MjData) -> Iterator[_Pi
 
 
 def _geom(
-    model: mujoco.MjModel, piece: _Piece, frame: tuple[Floats, Floats], probe: Probe | None
+    model: mujoco.MjModel,
+    piece: _Piece,
+    frame: tuple[Floats, Floats],
+    probe: Probe | None,
+    force: float,
 ) -> Geom:
     (nodes, axes), weight = frame, piece.weight
 
@@ -80,7 +94,8 @@ def _geom(
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
     places, aside = _along(nodes, piece.ends)
     start, end = sorted(places.tolist())
-    stiffness, time_constant, decay = _pushes(model, stated("solref"), stated("solimp"), weight)
+    solref, solimp = stated("solref"), stated("solimp").tolist()
+    stiffness, decay = _pushes(model, solref.tolist(), solimp, weight, force)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
     return Geom(
@@ -95,7 +110,7 @@ def _geom(
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
         weight=weight,
         stiffness=stiffness,
-        time_constant=time_constant,
+        time_constant=float(solref[0]) if solref[0] > 0 else math.nan,
         decay=decay,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
@@ -118,21 +133,30 @@ def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
 
 
 def _pushes(
-    model: mujoco.MjModel, solref: Floats, solimp: Floats, weight: float
-) -> tuple[float, float, float]:
-    """Force over penetration at rest, the time constant if solref states one, and the damper's.
+    model: mujoco.MjModel, solref: list[float], solimp: list[float], weight: float, force: float
+) -> tuple[float, float]:
+    """Force over penetration at rest under a force, and the rate of the damper.
 
-    The force is k/((1 - d) A) times the depth, with MuJoCo's k, impedance d and the body's inverse
-    mass A; see MuJoCo's documentation, "Solver parameters".
+    As deep as that force presses it, where its impedance changes with the depth.
     """
-    impedance = min(float(solimp[0]), 0.9999)
-    time_constant, ratio = solref.tolist()
-    if time_constant > 0:
-        taken = max(time_constant, 2 * model.opt.timestep)
-        stiffness, decay = 1 / (taken * ratio) ** 2, 2 / (impedance * taken)
-    else:
-        stiffness, decay, time_constant = -time_constant, -ratio, np.nan
-    return float(stiffness / ((1 - impedance) * weight)) if weight else np.inf, time_constant, decay
+    if (solref[0] > 0) != (solref[1] > 0):
+        solref = [*_DEFAULT]  # MuJoCo takes no mixture of its two forms
+    safe = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    inverse, step = weight or 1.0, model.opt.timestep if safe else 0.0
+
+    def at(depth: float) -> tuple[float, float]:
+        stiffness, damping = from_solref(solref, solimp, inverse, depth=depth, timestep=step)
+        return max(stiffness, _NOTHING), damping
+
+    def too_deep(log_depth: float) -> float:
+        return log_depth + math.log(at(math.exp(log_depth))[0] / force)
+
+    low, high = sorted((at(0.0)[0], at(math.inf)[0]))
+    depth = 0.0
+    if high > low:
+        depth = math.exp(brentq(too_deep, math.log(force / high) - 1, math.log(force / low) + 1))
+    (stiffness, damping), d = at(depth), impedance_at(solimp, depth)
+    return stiffness if weight else math.inf, damping * (1 - d) * inverse / d
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:

@@ -82,7 +82,7 @@ def from_solref(
         Force over speed of approach [N s/m].
     """
     first, second = solref[:2]
-    d = _impedance(list(solimp), depth)
+    d = impedance_at(list(solimp), depth)
     largest = min(max(solimp[1], _LEAST), _LARGEST)
     if first > 0:
         constant = max(first, 2 * timestep)
@@ -93,7 +93,7 @@ def from_solref(
     return k * d**2 / yielding, b * d / yielding
 
 
-def _impedance(solimp: list[float], depth: float) -> float:
+def impedance_at(solimp: Sequence[float], depth: float) -> float:
     """MuJoCo's d at a depth: a power of it up to the midpoint, and the same turned round after."""
     low, high = (min(max(x, _LEAST), _LARGEST) for x in solimp[:2])
     width, middle, power = (*solimp[2:], *(1e-3, 0.5, 2.0)[len(solimp) - 2 :])

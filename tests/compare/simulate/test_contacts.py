@@ -8,6 +8,7 @@ from compare.simulate.fixing import fix
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import contact_stiffness
 from mujoco_models import inspect_model
+from mujoco_models.model.solref import from_solref
 from tests.compare.simulate.faults import changed
 from tests.mujoco_models.inspect.chains import Chain
 
@@ -61,6 +62,35 @@ def test_contacts_are_as_hard_as_those_of_what_moves(tmp_path):
     )
     assert on_rail.geoms[0].stiffness > 30 * on_rail.geoms[1].stiffness
     assert contact_stiffness(on_rail) == pytest.approx(contact_stiffness(of_mocap), rel=2e-3)
+
+
+OF_ALL = 'solimp="0.98 0.98 0.001"'
+
+
+@pytest.mark.parametrize("solimp", ["0 0.98 1e-9", "0.5 0.98 0.01", "0.98 0.5 0.01", "0 0 0.001"])
+def test_contacts_are_as_hard_as_they_are_where_a_sweep_presses_them(tmp_path, solimp):
+    """An impedance that begins at 0, as many models', was an internal error."""
+    found = changed(tmp_path, ON_RAIL, (OF_ALL, f'solimp="{solimp}"')).found
+    numbers = [float(word) for word in solimp.split()]
+    for geom in found.geoms:
+        depth = 3 * found.tip_rigidity / geom.stiffness
+        law = from_solref((0.02, 1.0), numbers, geom.weight, depth=depth)
+        assert geom.stiffness == pytest.approx(law[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(("solref", "as_if"), [("0.02 0", "0.02 1"), ("0 1", "0.02 1")])
+def test_a_mixture_of_both_forms_of_solref_is_none(tmp_path, solref, as_if):
+    """MuJoCo takes its default instead."""
+    found, default = (inspect_model(Chain(solref=text).write(tmp_path)) for text in (solref, as_if))
+    assert contact_stiffness(found) == pytest.approx(contact_stiffness(default), rel=1e-9)
+
+
+def test_a_time_constant_below_two_steps_counts_if_a_flag_says_so(tmp_path):
+    """Swept, a model whose contacts were said to be soft was 0.2 % off."""
+    short = Chain(solref="0.004 1")
+    flag = ("<worldbody>", '<option><flag refsafe="disable"/></option><worldbody>')
+    safe, own = changed(tmp_path, short), changed(tmp_path, short, flag)
+    assert contact_stiffness(own.found) > 5 * contact_stiffness(safe.found)
 
 
 def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):

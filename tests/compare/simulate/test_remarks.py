@@ -39,7 +39,8 @@ def of_rods(*values):
         pytest.param(Chain(links=60), STATED, marks=pytest.mark.slow),
         (Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'), STATED),
         (Chain(site='euler="0 0 1.5707963267948966"'), STATED),
-        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), None),  # a straight taper
+        # A straight taper.
+        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}, solref="0.06 1"), None),
         pytest.param(Rod(edges=12), WIRE, marks=rods),
         of_rods(Rod(), WIRE),
         of_rods(Rod(10, dof=""), WIRE),
