@@ -41,6 +41,7 @@ _SAG = 2e-3  # L; as a contact that is so far off
 _BENDS = 5.0  # rad; what all joints together turn by in a usual sweep, at most
 _RUBS = 2e-3  # EI/L; 3e-3 moves readings by 0.7 per cent: joints turn faster than in the mean, too
 _ELASTICA = 0.02  # L; a sound chain of ten links is off by 4e-3 at P L^2/EI = 10
+_NONLINEAR = 5e-3  # L; where springs stiffen by 10 per cent it is 1.5e-2, and readings are 4 off
 _METRES = 3.0  # a longer vibrissa is rather one in millimetres
 _READS = 0.01  # of a load, by the sensor that should read all of it
 # What MuJoCo's solver leaves undone (`MeasuredBeam.undone`): 400 cost a whip of 14 links nothing,
@@ -103,7 +104,8 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
                      f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
-    if abs(off) <= RIGIDITY and error > _ELASTICA and not found.limits:
+    most = _ELASTICA if found.linear else _NONLINEAR
+    if abs(off) <= RIGIDITY and error > most and not found.limits:
         straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
                      "cantilever",

@@ -165,8 +165,10 @@ def test_a_medium_is_noted(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(mujoco.MjModel, "jnt_stiffnesspoly"), reason="of MuJoCo 4")
-def test_springs_that_stiffen_are_no_lack_of_links(tmp_path):
-    found = changed(tmp_path, Chain(), ('stiffness="20.0"', 'stiffness="20 0 1e4"'))
+@pytest.mark.parametrize("stiffness", ["20 0 1e4", "20 8"])
+def test_springs_that_stiffen_are_no_lack_of_links(tmp_path, stiffness):
+    """Of the second one readings were 4 % off."""
+    found = changed(tmp_path, Chain(), ('stiffness="20.0"', f'stiffness="{stiffness}"'))
     assert any("its springs stiffen" in str(fault) for fault in found.faults)
 
 
