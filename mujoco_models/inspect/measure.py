@@ -126,6 +126,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         stable_step=_stable_step(model, squares, damping),
         tolerance=float(model.opt.tolerance),
         undone=_undone(model) * period**4 / (mass * length**2),
+        conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
         linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),

@@ -143,6 +143,8 @@ class MeasuredBeam(Shown):
     undone : float
         Up to how much MuJoCo's solver may stop short, over mass (length / period^2)^2 and length^2:
         its tolerance counts in the mean inertia of the whole model and in all its coordinates.
+    conjugate : bool
+        Whether that solver is CG, which stops shorter than Newton.
     damping_ratio : float
         Of the first vibration.
     linear : bool
@@ -203,6 +205,7 @@ class MeasuredBeam(Shown):
     stable_step: float
     tolerance: float
     undone: float
+    conjugate: bool
     damping_ratio: float
     linear: bool
     medium: tuple[float, float, float]
