@@ -77,7 +77,9 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
                      edits=treatment.contacts(found, margin="0", gap="0"))  # fmt: skip
     rubs, decay = (max(getattr(g, x) for g in meeting) for x in ("friction", "decay"))
     steps = treatment.steps(found) if said else ()
-    chatters = rubs**2 * hard * decay * found.period > HARDEST_RUBBING
+    # One that is damped more swings as little as a critical one with its damper, and is as hard.
+    over = max(1.0, *(geom.damping_ratio for geom in meeting)) ** 2
+    chatters = rubs**2 * hard * over * decay * found.period > HARDEST_RUBBING
     if rubs > 0 and (found.cone == "pyramidal" or (chatters and rubs == 1)):
         which, cone = ", MuJoCo's default," if rubs == 1 else "", found.cone
         yield Remark("fault", "contact", f"friction {rubs:g}{which} by a {cone} cone chatters",

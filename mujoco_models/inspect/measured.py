@@ -81,6 +81,7 @@ class Geom:
     # Of its contacts, as its solref says; NaN if solref states a stiffness [time].
     time_constant: float
     decay: float  # of how fast it meets an object, by its contact's damper [1/time]
+    damping_ratio: float  # of its contacts
     friction: float  # coefficient; 0 if its contacts have no friction
     margin: float  # how far from an object its contacts already push, less their gap [length]
 

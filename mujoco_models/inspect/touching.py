@@ -95,7 +95,7 @@ def _geom(
     places, aside = _along(nodes, piece.ends)
     start, end = sorted(places.tolist())
     solref, solimp = stated("solref"), stated("solimp").tolist()
-    stiffness, decay = _pushes(model, solref.tolist(), solimp, weight, force)
+    stiffness, decay, ratio = _pushes(model, solref.tolist(), solimp, weight, force)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
     return Geom(
@@ -112,6 +112,7 @@ def _geom(
         stiffness=stiffness,
         time_constant=float(solref[0]) if solref[0] > 0 else math.nan,
         decay=decay,
+        damping_ratio=ratio,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
     )
@@ -134,8 +135,8 @@ def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
 
 def _pushes(
     model: mujoco.MjModel, solref: list[float], solimp: list[float], weight: float, force: float
-) -> tuple[float, float]:
-    """Force over penetration at rest under a force, and the rate of the damper.
+) -> tuple[float, float, float]:
+    """Force over penetration at rest under a force, the rate of the damper, and its ratio.
 
     As deep as that force presses it, where its impedance changes with the depth.
     """
@@ -156,7 +157,9 @@ def _pushes(
     if high > low:
         depth = math.exp(brentq(too_deep, math.log(force / high) - 1, math.log(force / low) + 1))
     (stiffness, damping), d = at(depth), impedance_at(solimp, depth)
-    return stiffness if weight else math.inf, damping * (1 - d) * inverse / d
+    gives = (1 - d) * inverse
+    ratio = damping / 2 / math.sqrt(stiffness / gives)
+    return stiffness if weight else math.inf, damping * gives / d, ratio
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:

@@ -64,6 +64,16 @@ def test_contacts_are_as_hard_as_those_of_what_moves(tmp_path):
     assert contact_stiffness(on_rail) == pytest.approx(contact_stiffness(of_mocap), rel=2e-3)
 
 
+@pytest.mark.parametrize(("solref", "chatters"), [("0.04 1", False), ("0.02 3", True)])
+def test_friction_chatters_by_a_damper_that_is_more_than_critical(tmp_path, solref, chatters):
+    """Of one of ratio 3, which was sound, 27 of 60 stations; of one of 1, as soft, 2."""
+    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
+    time = ('timestep="0.01"', 'timestep="0.002"'), (OF_ALL, 'solimp="0.9 0.9 0.001"')
+    chain = replace(ON_RAIL, solref=solref)
+    said = changed(tmp_path, chain, *rubbing, *time).faults
+    assert any("friction 0.5 chatters" in str(fault) for fault in said) is chatters
+
+
 OF_ALL = 'solimp="0.98 0.98 0.001"'
 
 

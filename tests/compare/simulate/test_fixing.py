@@ -164,6 +164,7 @@ MOTOR_ALONE = '<velocity joint="rail"'
         (OPTION, f'<option><flag spring="disable"/></option>{OPTION}', "flags"),
         (OPTION, f'<option><flag sensor="disable"/></option>{OPTION}', "flags"),
         ('name="rail"', 'name="rail" actuatorfrcrange="-1 1"', "foot"),
+        (MOTOR_ALONE, f'{MOTOR_ALONE} forcerange="-50 50"', "foot"),  # of what weighs 1e5
         ('name="rail"', 'name="rail" frictionloss="3e5"', "foot"),
         ('name="rail"', 'name="rail" damping="1e7"', "foot"),
     ],
@@ -257,9 +258,9 @@ def test_a_rail_leaves_keyframes_and_later_edits_where_they_were(tmp_path):
 
 
 def test_a_drive_that_reaches_as_far_as_a_sweep_is_no_fault(tmp_path):
-    """Its limits are those on the way to the left alone."""
-    limits = 'forcerange="-9 9" ctrlrange="-0.06 0.01"'
-    path = on_rail(tmp_path, ('name="rail"', 'name="rail" range="-2.1 0.1"'),
+    """Its limits are those on the way to the left alone; swept so, a slide of 2.2 L stopped it."""
+    limits = 'forcerange="-2e3 2e3" ctrlrange="-0.06 0.01"'
+    path = on_rail(tmp_path, ('name="rail"', 'name="rail" range="-2.3 0.1"'),
                    (MOTOR_ALONE, f"{MOTOR_ALONE} {limits}"))  # fmt: skip
     assert Inspection(inspect_model(path)).sound
 
