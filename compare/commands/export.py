@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from decimal import ROUND_CEILING, Context
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 _SPEED = 0.05  # L/T1; what is slower is nearer to rest
 _OUT = Path("whisker.xml")
+_UPWARDS = Context(prec=2, rounding=ROUND_CEILING)
 _MATERIALS = 2, 3  # modulus, radius, and a tube's inner one
 
 
@@ -154,7 +156,7 @@ def _lines(found: "Prescription", error: float, si: bool) -> list[str]:
     whisker = found.whisker
     settings, motion, period = whisker.settings, whisker.motion, whisker.period
     second, stiffness = (" s", " N/m") if si else ("", "")
-    most = _upwards(found.error)
+    most = upwards(found.error)
     return [
         f"A {settings.beam} of {settings.segments} segments, swept at {motion.speed:g} L/T1, T1 = "
         f"{period:.4g}{second}: {most} rms at most, of {error:g} asked for: from MuJoCo "
@@ -164,7 +166,6 @@ def _lines(found: "Prescription", error: float, si: bool) -> list[str]:
     ]
 
 
-def _upwards(x: float) -> str:
+def upwards(x: float) -> str:
     """Two digits of a bound, rounded up."""
-    digit = 10.0 ** (math.floor(math.log10(x)) - 1)
-    return f"{math.ceil(x / digit) * digit:.1e}"
+    return f"{float(_UPWARDS.create_decimal(repr(x))):.1e}"

@@ -61,15 +61,21 @@ class Fixed:
 def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Fixed:
     """Write a copy without the faults that a number fixes."""
     model, done, asked = load(path), list[Edit | Insert](), 0
+    now = model
     files: tuple[Path, ...] = ()
     for _ in range(_ROUNDS):
         wanted = dict.fromkeys(edit for fault in inspection.faults for edit in fault.edits)
-        new = [edit for edit in wanted if not (isinstance(edit, Insert) and edit in done)]
+        new = [
+            edit.of(model, now) if isinstance(edit, Edit) else edit
+            for edit in wanted
+            if isinstance(edit, Edit) or edit not in done
+        ]
         if not new and files:
             break
         done += new
         asked = asked or len(done)
         files = fixed(path, model, done, out)
+        now = load(out)
         try:
             inspection = Inspection(inspect_model(out, **names), inspection.stated)
         except InputError as error:

@@ -12,12 +12,16 @@ SINKS = 2e-3
 """Depth of a contact [L]."""
 SINKS_RUBBING = 4e-3
 """The same with friction, by which harder ones chatter."""
+RADIUS = 2e-3
+"""Of thickness [L]: the contour that the axis feels is the radius away."""
 FORCE = 3.0
 """The largest of a usual sweep [EI/L^2]."""
 # Stiffness [EI/L^3] and rate of the damper [1/T1] of a contact that rubs, times its coefficient
 # squared, at damping ratios of 0.25 to 1: of 60 stations at most 4 chatter up to 8.0e3, 10 to 20
 # at 8.6e3 to 35e3, 57 at 9e5. Lighter damping rings, at some stiffnesses.
 HARDEST_RUBBING = 7e3
+EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")
+"""Integrators that are explicit in the springs."""
 
 
 @dataclass(frozen=True)

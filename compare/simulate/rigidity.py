@@ -112,6 +112,12 @@ def clamp_stiffness(found: MeasuredBeam) -> float:
     return float(found.length / (as_intended(found) * compliance))
 
 
+def hand_softens(found: MeasuredBeam) -> float:
+    """How much less EI the tip shows by what turns between drive and clamp, relative."""
+    turns = 0.0 if found.hand is None else found.hand.rotation
+    return 3 * as_intended(found) / found.length * turns
+
+
 def moving(found: MeasuredBeam) -> list[Geom]:
     """What touches and moves: not what is fixed to the foot."""
     start = found.joints[0].s

@@ -56,17 +56,19 @@ def hardest(found: MeasuredBeam) -> str:
 
 
 def touching(found: MeasuredBeam, friction: float) -> tuple[Edit, ...]:
-    """Contacts as hard as the time step of `steps` takes.
+    """Contacts as hard as they should be, or as the time step of `steps` takes.
 
     Where those would chatter by friction that somebody stated, they swing rather than stop at once,
     and are as soft as they may be.
     """
     solref, step, rubs = hardest(found), timestep(found), 0.0 if friction == 1 else friction
     lightest = max((geom.weight for geom in moving(found)), default=0.0)
-    if rubs and lightest:
+    if lightest:
         unit = as_intended(found) / found.length**3
         yields = (1 - _IMPEDANCE) * lightest * unit
         hard, decay = 1 / (4 * step**2 * yields), found.period / (_IMPEDANCE * step)
+        if hard > _CONTACT:
+            solref = f"{number(1 / math.sqrt(_CONTACT * yields))} 1"
         if rubs**2 * hard * decay > HARDEST_RUBBING:
             solref = f"{number(1 / math.sqrt(_RUBBING * yields) / _SWINGING)} {_SWINGING}"
     solimp = f"{_IMPEDANCE} {_IMPEDANCE} 0.001"
@@ -172,10 +174,14 @@ def held(found: MeasuredBeam) -> tuple[Edit, ...]:
     if hand.welds:
         hard = Edit("weld", (("solref", hardest(found)), ("solimp", HARD)), hand.welds)
         return (hard, *steps(found)) if timestep(found) < found.timestep else (hard,)
-    rigid = _RIGID * as_intended(found) / found.length
+    rigid = len(hand.numbers) * _RIGID * as_intended(found) / found.length**3
     return tuple(
-        Edit("joint", (("stiffness", number(rigid / found.length**2 if slides else rigid)),), (j,))
-        for j, slides in zip(hand.numbers, hand.slides, strict=True)
+        Edit(
+            "joint",
+            (("stiffness", number(rigid * (1 if slides else found.length**2 + arm**2))),),
+            (j,),
+        )
+        for j, slides, arm in zip(hand.numbers, hand.slides, hand.arms, strict=True)
     )
 
 

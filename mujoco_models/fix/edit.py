@@ -1,6 +1,10 @@
 """What is to be changed in a model: attributes of its elements, and elements that it lacks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import mujoco
+
+_COUNTS = {"joint": "njnt", "site": "nsite"}  # of what is put between others
 
 
 @dataclass(frozen=True)
@@ -11,6 +15,18 @@ class Edit:
     kind: str
     attributes: tuple[tuple[str, str], ...]  # names and values; an empty value takes it away
     numbers: tuple[int, ...] = ()  # of the elements in the compiled model
+
+    def of(self, before: mujoco.MjModel, now: mujoco.MjModel) -> "Edit":
+        """With the numbers that its elements had before others, which have names, were put in."""
+        if self.kind not in _COUNTS:
+            return self
+        old, new = (
+            [getattr(m, self.kind)(i).name for i in range(getattr(m, _COUNTS[self.kind]))]
+            for m in (before, now)
+        )
+        added = [i for i, name in enumerate(new) if name and name not in old]
+        own = (n for n in self.numbers if n not in added)
+        return replace(self, numbers=tuple(n - sum(i < n for i in added) for n in own))
 
     def __str__(self) -> str:
         return " ".join(f'{name}="{value}"' for name, value in self.attributes if value)

@@ -75,7 +75,8 @@ class Texts:
             raise InputError(
                 "--write", f"{edit.kind} {edit.numbers[found.index(None)]} of the model",
                 "to be seen in its file",
-                f"another element makes it, or <attach> another file: set {edit} there",
+                "another element makes it, or <attach> another file, or <compiler> discards or "
+                f"fuses what stands beside it: set {edit} there",
             )  # fmt: skip
         elements = list({id(e): e for e in found if e is not None}.values())
         if edit.kind == "joint" and {"stiffness", "damping"}.intersection(dict(edit.attributes)):
@@ -138,6 +139,21 @@ class Texts:
             raise InputError("--write", f"body {new.body}", "to be seen in the file",
                              f"put {new.text} into it")  # fmt: skip
         self._put_into(element, new.text)
+        if new.text.startswith("<joint"):
+            self._widen_keys(new.body)
+
+    def _widen_keys(self, body: int) -> None:
+        """Give keyframes a place and a speed of a joint that comes first in a body."""
+        model = self._places.model
+        later = model.jnt_bodyid >= body
+        keys = [e for e in self._places.root.below() if e.tag == "key"]
+        for name, starts, count in (
+            ("qpos", model.jnt_qposadr, model.nq), ("qvel", model.jnt_dofadr, model.nv),
+        ):  # fmt: skip
+            at = int(starts[later].min(initial=count))
+            for key in (key for key in keys if name in key.attributes):
+                numbers = key.attributes[name].split()
+                self._give(key, name, " ".join([*numbers[:at], "0", *numbers[at:]]))
 
     def _put_into(self, element: Element, text: str) -> None:
         end = self._end_of_tag(element)

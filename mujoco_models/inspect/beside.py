@@ -3,7 +3,6 @@
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Integers
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import bodies_of_constraint
 from mujoco_models.inspect.parts import Parts
@@ -49,24 +48,6 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
                 f"take tendon {model.tendon(tendon).name!r} away, or its stiffness, limits and "
                 "actuator",
             )  # fmt: skip
-
-
-def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:
-    """The moment by which friction holds a joint that turns at a rate: the median of them.
-
-    MuJoCo's friction of joints is a damper whose moment has a bound, `frictionloss`; how strong it
-    is goes with solreffriction, in the model's own unit of time.
-    """
-    if not model.dof_frictionloss[dofs].any():
-        return 0.0
-    data = mujoco.MjData(model)
-    data.qvel[dofs] = rate
-    mujoco.mj_forward(model, data)
-    rubs = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
-    mine = rubs & np.isin(data.efc_id, dofs)
-    held = np.abs(data.efc_D * data.efc_aref)[mine]
-    most = data.efc_frictionloss[mine]
-    return float(np.median(np.minimum(held, most))) if mine.any() else 0.0
 
 
 def limit_stiffness(model: mujoco.MjModel, parts: Parts) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 
 _ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere
@@ -35,13 +35,17 @@ class Reach:
     placed: float  # to where a position actuator's ctrlrange ends [length]
     speed: float  # of a velocity actuator
     force: float  # of an actuator
+    joint_force: float  # of all actuators on the slide
     follows: bool  # whether it does what it is given at once
     stiffness: float  # of a spring on the slide itself
+    damping: float  # of the slide itself, and the force of its friction at a sweep's speed
+    friction: float
+    inertia: float  # of all that it moves
     gain: float = 0.0  # of an actuator: its force for a length behind, or for a speed
     by_place: bool = False
 
 
-def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
+def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Reach | None:
     """What limits the slide that moves a body along the sweep; None of another drive."""
     mover = mover_of(model, foot, left)
     if mover is None or mover.mocap is not None or mover.joint is None:
@@ -52,28 +56,41 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats) -> Reach | None:
     sense = float(np.sign(data.xaxis[joint] @ left))
     spring = float(model.jnt_stiffness[joint])
     start = float(model.qpos0[model.jnt_qposadr[joint]])
+    dof, inf = model.jnt_dofadr[[joint]], math.inf
+    row, unit = np.zeros((2, model.nv))
+    unit[dof] = 1.0
+    mujoco.mj_mulM(model, data, row, unit)
+    held = float(model.dof_damping[dof[0]]), friction_loss(model, dof, speed), float(row[dof[0]])
 
     def ahead(limited: bool, ends: Floats, at: float) -> float:
-        return float(max((ends - at) * sense)) if limited else math.inf
+        return float(max((ends - at) * sense)) if limited else inf
 
     way = ahead(bool(model.jnt_limited[joint]), model.jnt_range[joint], start)
     if actuator is None or model.actuator_biastype[actuator] != _FOLLOWS:
-        return Reach(joint, actuator, way, math.inf, math.inf, math.inf, True, spring)
+        return Reach(joint, actuator, way, inf, inf, inf, inf, True, spring, *held)
     by_place = model.actuator_biasprm[actuator, 1] != 0
     gear = float(model.actuator_gear[actuator, 0])
     given = model.actuator_ctrlrange[actuator] / gear
     most = ahead(bool(model.actuator_ctrllimited[actuator]), given, start if by_place else 0.0)
-    limited = bool(model.actuator_forcelimited[actuator])
-    force = float(np.abs(model.actuator_forcerange[actuator] * gear).min())
+
+    def limit(limited: bool, ends: Floats) -> float:
+        return float(np.abs(ends).min()) if limited else inf
+
     return Reach(
         joint=joint,
         actuator=actuator,
         way=way,
-        placed=most if by_place else math.inf,
-        speed=math.inf if by_place else most,
-        force=force if limited else math.inf,
+        placed=most if by_place else inf,
+        speed=inf if by_place else most,
+        force=limit(
+            model.actuator_forcelimited[actuator], model.actuator_forcerange[actuator] * gear
+        ),
+        joint_force=limit(model.jnt_actfrclimited[joint], model.jnt_actfrcrange[joint]),
         follows=bool(model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE),
         stiffness=spring,
+        damping=held[0],
+        friction=held[1],
+        inertia=held[2],
         gain=-float(model.actuator_biasprm[actuator, 1 if by_place else 2]) * gear**2,
         by_place=bool(by_place),
     )
@@ -203,3 +220,21 @@ def _refuse_other_drives(model: mujoco.MjModel, joint: int) -> None:
             "one that can be moved by itself",
             "give the joint an actuator of position or velocity, or none",
         )
+
+
+def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:
+    """The moment by which friction holds a joint that turns at a rate: the median of them.
+
+    MuJoCo's friction of joints is a damper whose moment has a bound, `frictionloss`; how strong it
+    is goes with solreffriction, in the model's own unit of time.
+    """
+    if not model.dof_frictionloss[dofs].any():
+        return 0.0
+    data = mujoco.MjData(model)
+    data.qvel[dofs] = rate
+    mujoco.mj_forward(model, data)
+    rubs = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
+    mine = rubs & np.isin(data.efc_id, dofs)
+    held = np.abs(data.efc_D * data.efc_aref)[mine]
+    most = data.efc_frictionloss[mine]
+    return float(np.median(np.minimum(held, most))) if mine.any() else 0.0

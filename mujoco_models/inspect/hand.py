@@ -24,7 +24,9 @@ class Hand:
 
     joints: tuple[str, ...]  # those that do, the most first
     numbers: tuple[int, ...]  # of these joints in the model
+    loose: bool  # whether a free body carries it that no weld holds
     slides: tuple[bool, ...]  # which of them
+    arms: tuple[float, ...]  # how far from the clamp each is [length]
     welds: tuple[int, ...]  # of the first of them, if it is free
     time_constant: float  # of the weld as MuJoCo takes it; NaN if it is not as hard as it can be
     rotation: float  # of the clamp about the axis of the sweep, over a moment [1/(force length)]
@@ -55,7 +57,7 @@ def measure_hand(
 
     What no spring, servo or weld holds, a damper or an inertia may hold for the time of a sweep.
     """
-    joints = joints_of_hand(model, parts, -axes[0])
+    joints = sorted(joints_of_hand(model, parts, -axes[0]))  # as coordinates are
     if not joints:
         return None
     hand = _dofs_of(model, joints)
@@ -84,7 +86,12 @@ def measure_hand(
     return Hand(
         joints=tuple(model.joint(j).name or f"joint {j}" for j in giving),
         numbers=tuple(giving),
+        loose=any(
+            model.jnt_type[j] == _FREE and not welds_of(model, int(model.jnt_bodyid[j]))
+            for j in joints
+        ),
         slides=tuple(bool(model.jnt_type[j] == mujoco.mjtJoint.mjJNT_SLIDE) for j in giving),
+        arms=tuple(np.linalg.norm(held.data.xanchor[giving] - held.clamp, axis=1).tolist()),
         welds=welds,
         time_constant=_time_constant(model, welds),
         rotation=float(compliances[2]),

@@ -13,6 +13,10 @@ from mujoco_models.inspect.parts import Parts, masses_of
 _TURNS = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)
 _PLACES = 2  # the last of a free joint's coordinates that slide
 _ON_PIECE = 0.05  # of its length, by which a site may be aside of the first piece
+_OFF = mujoco.mjtDisableBit
+_STATED = int(
+    _OFF.mjDSBL_CONSTRAINT | _OFF.mjDSBL_EQUALITY | _OFF.mjDSBL_SPRING | _OFF.mjDSBL_SENSOR
+)
 _HEAVY = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 
 
@@ -38,7 +42,10 @@ class Bending:
 
 
 class HeldModel:
-    """A model whose foot is held, without contacts and gravity, and loads on the tip."""
+    """A model whose foot is held, without contacts and gravity, and loads on the tip.
+
+    Springs, constraints and sensors that a flag switches off are on: the flag is a fault itself.
+    """
 
     small: float  # EI/L^2 and EI/L; the loads by which sensors are probed
 
@@ -49,10 +56,16 @@ class HeldModel:
         self.model, self.parts, self.dofs = copy(model), parts, dofs
         self.gravity = np.array(model.opt.gravity)
         self.model.opt.gravity[:] = 0
+        self.model.opt.disableflags &= ~_STATED
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
+        self.late = np.zeros(model.nsensor)
+        if hasattr(model, "sensor_delay"):  # since MuJoCo 3.5
+            kept = model.sensor_history[:, 0] > 0  # nothing is late without
+            self.late += kept * (model.sensor_delay + model.sensor_interval[:, 0])
+            self.model.sensor_delay[:] = self.model.sensor_interval[:] = 0
         self._masses = masses_of(model, parts.chain)
         # A length for what slides, and 1 for what turns.
         self.units = np.where(

@@ -115,8 +115,12 @@ class HeldChain(HeldModel):
         """All that acts on its coordinates at the present place and speed."""
         for stage in _STAGES:
             stage(self.model, self.data)
-        if self.data.nefc:  # what these hold with goes with the inertia
+        if self.data.nefc:  # what these hold with goes with the inertia, not with how it is solved
+            option = self.model.opt
+            solver = option.solver, option.iterations
+            option.solver, option.iterations = int(mujoco.mjtSolver.mjSOL_CG), 0
             mujoco.mj_forward(self.model, self.data)
+            option.solver, option.iterations = solver
         forces = self.data.qfrc_passive + self.data.qfrc_actuator - self.data.qfrc_bias
         forces += self._constrained()
         load = self._force, self._torque

@@ -10,14 +10,10 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.beside import (
-    check_constraints,
-    check_tendons,
-    friction_loss,
-    limit_stiffness,
-)
+from mujoco_models.inspect.beside import check_constraints, check_tendons, limit_stiffness
 from mujoco_models.inspect.drive import (
     drive_of,
+    friction_loss,
     holders,
     joints_of,
     movable,
@@ -45,6 +41,8 @@ from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
 _TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
+_WAY = 2.0  # L; of the foot in it
+_PRESSES = 3.0  # EI/L^2; the largest force of it
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
@@ -98,8 +96,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     chain = parts.rod is None
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = _sensed(welded or held, axes, tip_rigidity, length)
-    probe = probe_of(path, thickness(model, parts))
-    loads, bent, in_the_way = _bent(held, model, axes, tip_rigidity / length**2)
+    probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
+    loads, bent, in_the_way = _bent(held, model, axes, unit)
     sag, weight = _sag(held, axes)
     mass = float(model.body_mass[list(parts.chain)].sum())
     return MeasuredBeam(
@@ -110,13 +108,13 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive_of(model, parts.foot, -axes[0]),
-        reach=reach_of(model, parts.foot, -axes[0]),
-        switched=_switched(model),
+        reach=reach_of(model, parts.foot, -axes[0], _WAY * length / (_SWEEP * period)),
+        switched=_switched(model, tied=welded is not None or not chain),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
         hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
         joints=joints,
-        geoms=touching(model, parts, held.data, (nodes, axes), probe),
+        geoms=touching(model, parts, held.data, (nodes, axes), probe, _PRESSES * unit),
         tip_rigidity=tip_rigidity,
         stretch=bending.stretch,
         loads=loads,
@@ -128,6 +126,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         stable_step=_stable_step(model, squares, damping),
         tolerance=float(model.opt.tolerance),
         undone=_undone(model) * period**4 / (mass * length**2),
+        conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
         linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
@@ -350,6 +349,7 @@ def _seen(
         lever,
         _feels_contacts(held, sensor),
         cutoff,
+        float(held.late[sensor]),
     )
 
 
@@ -376,10 +376,14 @@ def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
     return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
 
 
-def _switched(model: mujoco.MjModel) -> tuple[tuple[str, str], ...]:
+def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:
+    """Flags by which it is not what it states, of equality constraints if one holds it."""
     off, on = mujoco.mjtDisableBit, mujoco.mjtEnableBit
     disabled = {"constraint": off.mjDSBL_CONSTRAINT, "contact": off.mjDSBL_CONTACT,
-                "actuation": off.mjDSBL_ACTUATION}  # fmt: skip
+                "actuation": off.mjDSBL_ACTUATION, "spring": off.mjDSBL_SPRING,
+                "sensor": off.mjDSBL_SENSOR}  # fmt: skip
+    if tied:
+        disabled["equality"] = off.mjDSBL_EQUALITY
     found = [(name, "enable") for name, bit in disabled.items() if model.opt.disableflags & bit]
     overrides = model.opt.enableflags & on.mjENBL_OVERRIDE
     return (*found, *([("override", "disable")] if overrides else []))

@@ -39,6 +39,7 @@ class Sensed:
     # False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
     feels_contacts: bool
     cutoff: float  # the largest reading that it gives; infinite if it has no such limit
+    late: float = 0.0  # by its own delay, and the time from one reading to the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,7 @@ class Geom:
     # Of its contacts, as its solref says; NaN if solref states a stiffness [time].
     time_constant: float
     decay: float  # of how fast it meets an object, by its contact's damper [1/time]
+    damping_ratio: float  # of its contacts
     friction: float  # coefficient; 0 if its contacts have no friction
     margin: float  # how far from an object its contacts already push, less their gap [length]
 
@@ -142,6 +144,8 @@ class MeasuredBeam(Shown):
     undone : float
         Up to how much MuJoCo's solver may stop short, over mass (length / period^2)^2 and length^2:
         its tolerance counts in the mean inertia of the whole model and in all its coordinates.
+    conjugate : bool
+        Whether that solver is CG, which stops shorter than Newton.
     damping_ratio : float
         Of the first vibration.
     linear : bool
@@ -202,6 +206,7 @@ class MeasuredBeam(Shown):
     stable_step: float
     tolerance: float
     undone: float
+    conjugate: bool
     damping_ratio: float
     linear: bool
     medium: tuple[float, float, float]

@@ -1,19 +1,22 @@
 """What of a user's vibrissa can touch an object: geoms, or the edges of a flex."""
 
+import math
 from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
 import mujoco
 import numpy as np
+from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from mujoco_models.inspect.measured import Geom
 from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
-from mujoco_models.model.solref import from_solref, pushes
+from mujoco_models.model.solref import from_solref, impedance_at
 
-_SOFTEST = 1e-300  # force/length, of a contact whose stiffness is none to rounding
+_DEFAULT = (0.02, 1.0)
+_NOTHING = 1e-200
 
 
 def touching(
@@ -22,10 +25,14 @@ def touching(
     data: mujoco.MjData,
     frame: tuple[Floats, Floats],
     probe: Probe | None,
+    force: float,
 ) -> tuple[Geom, ...]:
-    """All that can touch, from the clamp to the tip, by its nodes and the axes of the sweep."""
+    """All that can touch, from the clamp to the tip, by its nodes and the axes of the sweep.
+
+    How stiff that is, counts under a force.
+    """
     return tuple(
-        _geom(model, piece, frame, probe)
+        _geom(model, piece, frame, probe, force)
         for piece in (
             _links(model, parts, data) if parts.rod is None else _edges(model, parts.rod, data)
         )
@@ -70,7 +77,11 @@ def _edges(model: mujoco.MjModel, rod: Rod, data: mujoco.MjData) -> Iterator[_Pi
 
 
 def _geom(
-    model: mujoco.MjModel, piece: _Piece, frame: tuple[Floats, Floats], probe: Probe | None
+    model: mujoco.MjModel,
+    piece: _Piece,
+    frame: tuple[Floats, Floats],
+    probe: Probe | None,
+    force: float,
 ) -> Geom:
     (nodes, axes), weight = frame, piece.weight
 
@@ -83,10 +94,8 @@ def _geom(
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
     places, aside = _along(nodes, piece.ends)
     start, end = sorted(places.tolist())
-    solref, solimp = stated("solref").tolist(), stated("solimp").tolist()
-    stiffness, decay = np.inf, pushes(solref, solimp, model.opt.timestep)[1]
-    if weight:
-        stiffness = from_solref(solref, solimp, weight, timestep=model.opt.timestep)[0] or _SOFTEST
+    solref, solimp = stated("solref"), stated("solimp").tolist()
+    stiffness, decay, ratio = _pushes(model, solref.tolist(), solimp, weight, force)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
     return Geom(
@@ -101,8 +110,9 @@ def _geom(
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
         weight=weight,
         stiffness=stiffness,
-        time_constant=solref[0] if solref[0] > 0 else np.nan,
+        time_constant=float(solref[0]) if solref[0] > 0 else math.nan,
         decay=decay,
+        damping_ratio=ratio,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin") - stated("gap")),
     )
@@ -121,6 +131,35 @@ def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
     off = np.linalg.norm(points[:, None] - starts - on[..., None] * units, axis=-1)
     best = (np.arange(len(points)), np.argmin(off, axis=1))
     return np.asarray((np.cumsum(lengths) - lengths + on)[best]), np.asarray(off[best])
+
+
+def _pushes(
+    model: mujoco.MjModel, solref: list[float], solimp: list[float], weight: float, force: float
+) -> tuple[float, float, float]:
+    """Force over penetration at rest under a force, the rate of the damper, and its ratio.
+
+    As deep as that force presses it, where its impedance changes with the depth.
+    """
+    if (solref[0] > 0) != (solref[1] > 0):
+        solref = [*_DEFAULT]  # MuJoCo takes no mixture of its two forms
+    safe = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    inverse, step = weight or 1.0, model.opt.timestep if safe else 0.0
+
+    def at(depth: float) -> tuple[float, float]:
+        stiffness, damping = from_solref(solref, solimp, inverse, depth=depth, timestep=step)
+        return max(stiffness, _NOTHING), damping
+
+    def too_deep(log_depth: float) -> float:
+        return log_depth + math.log(at(math.exp(log_depth))[0] / force)
+
+    low, high = sorted((at(0.0)[0], at(math.inf)[0]))
+    depth = 0.0
+    if high > low:
+        depth = math.exp(brentq(too_deep, math.log(force / high) - 1, math.log(force / low) + 1))
+    (stiffness, damping), d = at(depth), impedance_at(solimp, depth)
+    gives = (1 - d) * inverse
+    ratio = damping / 2 / math.sqrt(stiffness / gives)
+    return stiffness if weight else math.inf, damping * gives / d, ratio
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:

@@ -82,26 +82,20 @@ def from_solref(
     damping : float
         Force over speed of approach [N s/m].
     """
-    d = impedance(solimp, depth)
-    k, b = pushes(solref, solimp, timestep)
+    first, second = solref[:2]
+    d = impedance_at(solimp, depth)
+    largest = min(max(solimp[1], _LEAST), _LARGEST)
+    if first > 0:
+        constant = largest * max(first, 2 * timestep)
+        rate = 1 / max(constant * second, _SHORTEST)
+        k, b = rate * rate, 2 / constant
+    else:
+        k, b = -first / largest**2, -second / largest
     yielding = (1 - d) * inverse_mass
     return k * d**2 / yielding, b * d / yielding
 
 
-def pushes(
-    solref: Sequence[float], solimp: Sequence[float], timestep: float
-) -> tuple[float, float]:
-    """MuJoCo's k over its impedance, and its b: of a contact's reference acceleration."""
-    first, second = solref[:2]
-    largest = min(max(solimp[1], _LEAST), _LARGEST)
-    if first <= 0:
-        return -first / largest**2, -second / largest
-    constant = largest * max(first, 2 * timestep)
-    rate = 1 / max(constant * second, _SHORTEST)
-    return rate * rate, 2 / constant
-
-
-def impedance(solimp: Sequence[float], depth: float) -> float:
+def impedance_at(solimp: Sequence[float], depth: float) -> float:
     """MuJoCo's d at a depth: a power of it up to the midpoint, and the same turned round after."""
     low, high = (min(max(x, _LEAST), _LARGEST) for x in solimp[:2])
     width, middle, power = (*solimp[2:], *(1e-3, 0.5, 2.0)[len(solimp) - 2 :])

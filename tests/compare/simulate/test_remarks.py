@@ -13,11 +13,10 @@ from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import clamp_stiffness, counted_twice, radii
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
-from tests.compare.simulate.faults import WIRE, faults_in, rods
+from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain
 from tests.mujoco_models.inspect.rods import Rod
 
-STATED = Beam()
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
 FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
 
@@ -40,7 +39,8 @@ def of_rods(*values):
         pytest.param(Chain(links=60), STATED, marks=pytest.mark.slow),
         (Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'), STATED),
         (Chain(site='euler="0 0 1.5707963267948966"'), STATED),
-        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), None),  # a straight taper
+        # A straight taper.
+        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}, solref="0.06 1"), None),
         pytest.param(Rod(edges=12), WIRE, marks=rods),
         of_rods(Rod(), WIRE),
         of_rods(Rod(10, dof=""), WIRE),
@@ -118,16 +118,6 @@ def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     assert any("nothing can move" in fault for fault in found)
 
 
-def changed(tmp_path, chain, *changes):
-    path = chain.write(tmp_path)
-    text = path.read_text()
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text)
-    return Inspection(inspect_model(path), STATED)
-
-
 def test_disabled_contacts_are_named(tmp_path):
     found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
     assert {fault.subject for fault in found.faults} >= {"flags"}
@@ -175,8 +165,10 @@ def test_a_medium_is_noted(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(mujoco.MjModel, "jnt_stiffnesspoly"), reason="of MuJoCo 4")
-def test_springs_that_stiffen_are_no_lack_of_links(tmp_path):
-    found = changed(tmp_path, Chain(), ('stiffness="20.0"', 'stiffness="20 0 1e4"'))
+@pytest.mark.parametrize("stiffness", ["20 0 1e4", "20 8"])
+def test_springs_that_stiffen_are_no_lack_of_links(tmp_path, stiffness):
+    """Of the second one readings were 4 % off."""
+    found = changed(tmp_path, Chain(), ('stiffness="20.0"', f'stiffness="{stiffness}"'))
     assert any("its springs stiffen" in str(fault) for fault in found.faults)
 
 
@@ -316,46 +308,6 @@ def test_explicit_steps_take_contacts_by_the_square_of_the_links(tmp_path, links
     assert ("too hard for euler" in said) is chatters
 
 
-# A slide with something that holds it.
-ON_RAIL = Chain(
-    foot="",
-    inside_foot='<joint name="rail" type="slide" axis="1 0 0" armature="10"/>'
-    '<inertial pos="0 0 0" mass="1e-3" diaginertia="1e-5 1e-5 1e-5"/>',
-)
-
-
-def test_friction_does_not_see_a_mocap_foot_move(tmp_path):
-    """Swept so, a reading was 61 % off (rms), and expected within 1 %; on a slide it slides."""
-    rubbing = ('condim="1"', 'friction="0.3"'), ("<option ", '<option cone="elliptic" ')
-    for chain, faulty in (Chain(), True), (ON_RAIL, False):
-        said = changed(tmp_path, chain, *rubbing).faults
-        assert any("friction does not see it move" in str(fault) for fault in said) is faulty
-
-
-@pytest.mark.parametrize(("beside", "named"), [("0.15 0 0", True), ("0.15 0 0.1", False)])
-def test_another_vibrissa_of_the_same_hand_gets_in_the_way(tmp_path, beside, named):
-    """One of a row of two was called sound, and read 6 % off; in another plane none matters."""
-    link = '<geom fromto="0 0 0 0 0.5 0"/>'
-    joint = '<joint axis="0 0 1" stiffness="2"/>'
-    inner = f'<body pos="0 0.5 0">{joint}{link}</body>'
-    other = f'<body pos="{beside}">{joint}{link}{inner}</body>'
-    path = Chain(inside_foot=other).write(tmp_path)
-    before = Inspection(inspect_model(path, foot="whisker-foot", geoms="whisker-geom*"))
-    assert any("another vibrissa" in str(fault) for fault in before.faults) is named
-    names = {"foot": "whisker-foot", "geoms": "whisker-geom*"}
-    after = fix(path, names, before, tmp_path / "fixed.xml").inspection
-    assert not any("another vibrissa" in str(fault) for fault in after.faults)
-
-
-def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):
-    """And not as hard as steps allow, which would chatter."""
-    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
-    before = changed(tmp_path, ON_RAIL, *rubbing, ('solref="0.02 1"', 'solref="0.5 1"'))
-    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml")
-    assert after.inspection.sound
-    assert after.followed == ()
-
-
 def test_no_dampers_are_noted(tmp_path):
     """Swept at 0.05 L/T1 readings are moved by less than 1e-4: no fault."""
     assert "damping" not in {r.subject for r in changed(tmp_path, Chain()).remarks}
@@ -412,13 +364,3 @@ def test_limits_and_friction_matter_as_far_as_they_hold(tmp_path, given, subject
     """MuJoCo's are soft: by how much, their solref says, in the model's own unit of time."""
     found = changed(tmp_path, Chain(), ("<joint ", f"<joint {given} "))
     assert (subject in {fault.subject for fault in found.faults}) is named
-
-
-def test_friction_takes_contacts_that_are_softer(tmp_path):
-    """As hard as steps allow, 57 of 60 stations of an antenna chattered; as fixed, 3."""
-    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
-    before = changed(tmp_path, ON_RAIL, *rubbing)
-    assert any("friction 0.5 chatters" in str(fault) for fault in before.faults)
-    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection
-    assert after.sound
-    assert {geom.friction for geom in after.found.geoms} == {0.5}

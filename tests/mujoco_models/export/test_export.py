@@ -9,6 +9,7 @@ import pytest
 
 from analytic import Beam, Case, Sweep, circle, named_case, solve_sweep
 from compare import load_case
+from compare.commands.export import upwards
 from compare.read.motion import first_period
 from compare.simulate.inspection import Inspection
 from mujoco_models import Motion, Settings, available_beams, inspect_model
@@ -196,3 +197,12 @@ def exported(name, beam, folder, error):
     off = worst_rms(solve_sweep(case), swept(folder / "whisker.xml", case, 0.05, period))
     (stated,) = re.findall(r": (\S+) rms at most", done.stdout)
     assert off < float(stated) <= error
+
+
+def test_a_bound_is_rounded_up_and_only_if_it_must_be():
+    """Not by what binary digits lack: 60 times 1e-4 is more than 6e-3."""
+    for digits in range(10, 100):
+        for power in range(-8, 1):
+            exact = float(f"{digits}e{power}")
+            assert float(upwards(exact)) == exact
+            assert float(upwards(exact * (1 + 1e-9))) == float(f"{digits + 1}e{power}")

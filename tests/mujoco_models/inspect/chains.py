@@ -15,6 +15,7 @@ class Chain:
     stiffer: dict[int, float] = field(default_factory=dict)
     curvature: float = 0.0
     gravity: str = "0 0 0"
+    solref: str = "0.02 1"
     site: str = ""
     tip: str = ""  # of the last geom
     foot: str = 'mocap="true"'
@@ -51,7 +52,7 @@ class Chain:
             f'<mujoco model="planted"><compiler angle="radian"/>'
             f'<option timestep="0.01" integrator="discrete" gravity="{self.gravity}"/>'
             f'<default><geom type="capsule" size="{self.radius!r}" condim="1" '
-            f'solref="0.02 1" solimp="0.98 0.98 0.001"/></default>'
+            f'solref="{self.solref}" solimp="0.98 0.98 0.001"/></default>'
             f"<worldbody>{self.text()}{self.beside}</worldbody>"
             f"<sensor>{self.sensors}</sensor></mujoco>"
         )
