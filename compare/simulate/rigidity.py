@@ -137,6 +137,8 @@ def radii(found: MeasuredBeam) -> tuple[float, float]:
     Of a taper in steps, which has these radii in the middle of its first and its last geom.
     """
     own = [geom for geom in found.geoms if geom.meets] or [found.geoms[0]]
+    if len(own) > 2 and own[-2].radius <= own[0].radius < own[-1].radius:
+        own = own[:-1]  # a bead at the tip alone is no rod's surface
     first, last = own[0], own[-1]
     if last.radius > first.radius:
         return (max(geom.radius for geom in own),) * 2

@@ -116,6 +116,14 @@ def test_a_step_is_a_fiftieth_of_the_first_period_or_less(tmp_path):
     assert timestep(replace(found, geoms=light)) < found.period / 60
 
 
+def test_a_bead_at_the_tip_is_what_changes_and_not_all_else(tmp_path):
+    """All else was made as thick as it."""
+    before, after = fixed(on_rail(tmp_path, tip='size="0.02"'))
+    assert faults_in(before) == {"radius"}
+    assert [edit.numbers for edit in after.edits] == [(before.found.geoms[-1].number,)]
+    assert {geom.radius for geom in after.inspection.found.geoms} == {0.005}
+
+
 def test_the_first_joint_gives_way_as_its_piece_does(tmp_path):
     _, after = fixed(on_rail(tmp_path, first="end", length=2.0))
     found = after.inspection.found
