@@ -29,6 +29,11 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
         )
         if calibration.both_ways and LAG not in calibration.found:
             yield Text("  Passes both ways show whether readings lag behind the foot: fit lag too.")
+    elif passes is not None and passes.leave_alike:
+        yield Text(
+            f"All passes leave the same at the same places (p = {passes.alike:.2g}), which is no "
+            "noise: something else is not as the case says, and the intervals do not hold."
+        )
     rows = []
     for name, found in calibration.found.items():
         unit = QUANTITIES["foot_x" if name in OF_THE_FOOT else name].dimension if si else ""
@@ -134,6 +139,7 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
             "chi_square": passes.chi_square,
             "degrees": passes.degrees,
             "probability": passes.probability,
+            "alike": passes.alike,
         },
     }
 
