@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import fdtrc, gammaincc
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 
@@ -72,35 +72,46 @@ def consistency(by_pass: Sequence[tuple[Floats, Floats]], alike: float = 1.0) ->
 def alike_by_chance(
     left: Floats, by_number: Floats, drift: Floats, foot_x: Floats, rows: Sequence[int]
 ) -> float:
-    """Probability that passes to one side leave by chance so much alike at the same places.
+    """Probability that passes leave by chance so much alike at the same places.
 
-    What is wrong in all passes is left at the same places by all; noise is not, however long it
-    remembers. `left`, `by_number` and `rows` are those of `correlated.estimate`, `drift` is what a
-    reading's zero and its slope do; what a change of the numbers explains does not count. The
-    probability is 1 of less than three passes.
+    What is wrong in all passes to one side is left by all at the same places; noise is not, however
+    long it remembers. `left`, `by_number` and `rows` are those of `correlated.estimate`, `drift` is
+    what a reading's zero and its slope do; what a change of the numbers explains does not count.
+    The probability is 1 of less than three passes to one side.
     """
-    if len(rows) < _FEWEST:
-        return 1.0
     each = np.split(foot_x, np.cumsum(rows)[:-1])
-    first, last = max(x.min() for x in each), min(x.max() for x in each)
-    here = (foot_x >= first) & (foot_x <= last)
-    along = np.minimum(_PLACES * (foot_x[here] - first) / (last - first), _PLACES - 1).astype(int)
-    cell = _PLACES * np.repeat(np.arange(len(rows)), rows)[here] + along
-    columns = np.concatenate([left[:, :, None], by_number, drift], axis=2)[here]
-    every = columns.reshape(len(cell), -1).T
-    cells = _PLACES * len(rows)
+    to_right = np.array([x[-1] > x[0] for x in each])
+    found = [1.0]
+    for some in (np.flatnonzero(to_right), np.flatnonzero(~to_right)):
+        if len(some) < _FEWEST:
+            continue
+        first, last = max(each[i].min() for i in some), min(each[i].max() for i in some)
+        number = np.full(len(rows), len(some))
+        number[some] = np.arange(len(some))
+        number = np.where((foot_x < first) | (foot_x > last), len(some), np.repeat(number, rows))
+        along = np.clip((foot_x - first) / (last - first) * _PLACES, 0, _PLACES - 1)
+        cell = _PLACES * number + along.astype(int)  # behind all passes what does not count
+        means = np.concatenate(
+            [_means(one, cell, len(some)) for one in (left[:, :, None], by_number, drift)]
+        )
+        means = means[:, :, np.isfinite(means).all(axis=(0, 1))]
+        shapes = np.linalg.qr(means[1:].mean(axis=1).T)[0]
+        # Each pass has a zero of its own, so of its drift more than of the rest is chance.
+        by_drift = means[0] @ shapes[:, by_number.shape[2] :]
+        rest = means[0] - means[0] @ shapes @ shapes.T
+        freedom = len(shapes) - len(shapes.T)
+        found += [_by_chance(by_drift, drift.shape[2]), _by_chance(rest, freedom)]
+    return min(1.0, max(len(found) - 1, 1) * min(found))
+
+
+def _means(columns: Floats, cell: Integers, passes: int) -> Floats:
+    """Means of columns (n, readings, m) at places of passes, shape (m, passes, ...)."""
+    cells, (n, readings, m) = passes * _PLACES, columns.shape
+    counts = np.bincount(cell, minlength=cells)[:cells]
+    sums = [np.bincount(cell, one, cells)[:cells] for one in columns.reshape(n, -1).T]
     with np.errstate(invalid="ignore"):  # of no stations there is no mean
-        means = np.array([np.bincount(cell, one, cells) for one in every])
-        means /= np.bincount(cell, minlength=cells)
-    means = means.reshape(left.shape[1], -1, len(rows), _PLACES).transpose(1, 2, 0, 3)
-    means = means.reshape(*means.shape[:2], -1)
-    means = means[:, :, np.isfinite(means).all(axis=(0, 1))]
-    shapes = np.linalg.qr(means[1:].mean(axis=1).T)[0]
-    by_drift = means[0] @ shapes[:, by_number.shape[2] :]
-    # Each pass has a zero of its own, so that of its drift more than of the rest is chance.
-    rest = means[0] - means[0] @ shapes @ shapes.T
-    freedom = len(shapes) - len(shapes.T)
-    return min(1.0, 2 * min(_by_chance(by_drift, drift.shape[2]), _by_chance(rest, freedom)))
+        means = np.reshape(sums / counts, (readings, m, passes, _PLACES))
+    return means.transpose(1, 2, 0, 3).reshape(m, passes, -1)
 
 
 def _by_chance(curves: Floats, most: int) -> float:

@@ -380,14 +380,7 @@ def _knowing_the_noise(
     curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
     straight, bent = np.split(nuisances, [2 * len(CLAMP_READINGS)], axis=2)
     explained = np.concatenate([by_number, bent], axis=2) if curved else by_number
-    ways, probabilities = np.array(measured.ways), []
-    for way in set(measured.ways):
-        here, rows = np.repeat(ways == way, measured.rows), np.array(measured.rows)[ways == way]
-        there = alike_by_chance(
-            left[here], explained[here], straight[here], measured.foot_x[here], rows.tolist()
-        )
-        probabilities.append(there)
-    alike = min(1.0, len(probabilities) * min(probabilities))
+    alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
     found = replace(found, by_pass=by_pass, alike=alike)
     return numbers, found, relieved[0] if curved else 0.0
 
