@@ -14,7 +14,15 @@ from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.drift import FEWEST, Bent, Zero, bent, no_zero, zero_of
 from compare.read.kinds import TEXTS
-from compare.read.nonsense import check_ahead, check_back, check_channels, check_drift, check_free
+from compare.read.nonsense import (
+    check_ahead,
+    check_back,
+    check_channels,
+    check_drift,
+    check_free,
+    check_object,
+    check_units,
+)
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
@@ -171,11 +179,13 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             for which, here in stretches.items():
                 stated = getattr(rig.passes, which)
                 check_free(which, stated, foot_x, before, here, name, raw.beam.si)
+            check_units(before, stretches.values(), name)
             zero = zero_of(foot_x, before, stretches, name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
             with np.errstate(over="ignore"):  # such numbers are refused later
                 known = np.nanstd(values[:, free], axis=1)
+            check_object(values, known, direction, name, "free_before" in stretches)
             provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:
         fault = error

@@ -128,9 +128,9 @@ def measured_under_load(
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded
     if len(order) < fewest:
-        name = "stations under load, but for those next to the snap-off"
+        name = f"stations of {readings.source} under load, but for those next to the snap-off"
         allowed = f"{fewest} or more, {_PER_UNKNOWN} for each unknown"
-        remedy = "sweep further or with more stations, or state less noise"
+        remedy = "sweep further or with more stations, state less noise, or leave the pass out"
         raise InputError(name, len(order), allowed, remedy)
     found = np.stack([readings.values(n)[order] for n in CLAMP_READINGS])
     zero = zero_uncertainty(readings, np.abs(found).max(axis=1))
