@@ -137,9 +137,14 @@ def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
     for one in passes:
         require("readings", one, Readings, "as Readings(table, beam)")
         if one.beam != passes[0].beam:
+            different = (
+                f"L = {x.beam.length:g}, EI = {x.beam.base_rigidity:g}, r = {x.beam.radius:g} "
+                f"({x.source})"
+                for x in (passes[0], one)
+            )
             raise InputError(
-                "vibrissa",
-                f"another one in {one.source} than in {passes[0].source}",
+                "vibrissae",
+                " and ".join(different),
                 "one and the same in all passes",
                 "passes of different rigs say nothing together: take each rig's own",
             )

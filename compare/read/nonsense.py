@@ -71,8 +71,8 @@ def check_object(values: Floats, noise: Floats, way: Direction, name: str, begin
 
 def check_units(values: Floats, stretches: Iterable[Booleans], name: str) -> None:
     """Refuse two free stretches whose noise is of different units."""
-    levels = [np.nanstd(values[:, here], axis=1) for here in stretches]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):  # without noise there is no ratio; too large is refused later
+        levels = [np.nanstd(values[:, here], axis=1) for here in stretches]
         ratio = levels[-1] / levels[0]
     if np.all(ratio > _UNITS) or np.all(ratio < 1 / _UNITS):
         what = f"a noise of {name} that changes {ratio[0]:.2g} times between them"

@@ -23,7 +23,7 @@ from compare.read.nonsense import (
     check_object,
     check_units,
 )
-from compare.read.rig import cells, read_sweeps
+from compare.read.rig import cells, check_recorded, read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
@@ -158,13 +158,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         dropped[reason] = int(getattr(record, reason).sum())
     foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
     said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
-    for reading, row in zip(CLAMP_READINGS, read, strict=True):
-        if not np.isfinite(row).any():
-            what, remedy = (
-                f"{reading} of {name}",
-                "the channel was not recorded: leave the pass out",
-            )
-            raise InputError(what, "without any number", "read in some rows", remedy)
+    check_recorded(raw, name)
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
@@ -179,8 +173,8 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             for which, here in stretches.items():
                 stated = getattr(rig.passes, which)
                 check_free(which, stated, foot_x, before, here, name, raw.beam.si)
-            check_units(before, stretches.values(), name)
             zero = zero_of(foot_x, before, stretches, name)
+            check_units(before, stretches.values(), name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
             with np.errstate(over="ignore"):  # such numbers are refused later

@@ -298,6 +298,11 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
             remedy = "check foot_x, units and object"
             if all(kind.name != OFFSET for kind in fit.kinds):
                 remedy += ", or fit offset too"
+            if turned := fit.measured.turned:
+                remedy = (
+                    f"the moment of {turned} is that of a sweep to the other side than foot_x "
+                    "goes: reverse the rows, or change a sign"
+                )
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break

@@ -75,6 +75,14 @@ class Measured:
         moved = [self.foot_x[one][-1] - self.foot_x[one][0] for one in self.passes]
         return ["right" if way > 0 else "left" for way in moved]
 
+    @property
+    def turned(self) -> str:
+        """Which passes bend the vibrissa to where the foot goes, as none does; empty if none."""
+        bends = ["left" if self.readings[-1, one].sum() < 0 else "right" for one in self.passes]
+        found = [f"pass {i}" for i, pair in enumerate(zip(bends, self.ways, strict=True), 1)
+                 if pair[0] == pair[1]]  # fmt: skip
+        return ", ".join(found)
+
     def slopes(self, readings: Floats) -> Floats:
         """Derivatives of some readings over the foot position, within each pass."""
         return np.concatenate(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from analytic import Beam, Case, Sweep, calibrate, circle, relative_noise, solve_sweep
+from analytic import Beam, Case, InputError, Sweep, calibrate, circle, relative_noise, solve_sweep
 from analytic.from_clamp.passes import alike_by_chance
 
 LEANING = Case(Beam(), circle(0.25, (0.05, 0.8)), Sweep(260), clamp_angle=np.radians(2.0))
@@ -81,3 +81,16 @@ def test_passes_of_noise_leave_the_same_by_chance_alone(memory, size):
         low, noticed = low + (found[0] < 0.05), noticed + (found[1] < 1e-3)
     assert low < 25
     assert noticed > 180
+
+
+def test_rows_in_reverse_order_are_named_as_that():
+    (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
+    back = replace(one, table=one.table.iloc[::-1].reset_index(drop=True))
+    with pytest.raises(InputError, match="moment of pass 1 is that of a sweep to the other side"):
+        calibrate(back, UPRIGHT)
+
+
+def test_passes_of_different_rigs_are_named():
+    (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
+    with pytest.raises(InputError, match=r"vibrissae = L = 1, EI = 1, .* and L = 2, EI = 1, r"):
+        calibrate([one, replace(one, beam=Beam(2.0))], UPRIGHT)
