@@ -83,6 +83,22 @@ def test_passes_of_noise_leave_the_same_by_chance_alone(memory, size):
     assert noticed > 180
 
 
+@pytest.mark.trial
+def test_passes_that_differ_by_noise_alone_are_called_so():
+    """The chi square of 200 sets of four passes has the mean of its degrees of freedom.
+
+    It is 2.0 if nothing says that the zeros are exact: zero and slope count as known to 0.1 %.
+    """
+    rng, found = np.random.default_rng(9), []
+    for _ in range(200):
+        some = passes(UPRIGHT, rng, 0.0)
+        known = {name: 1e-3 * size for name, size in some[0].provenance["free_noise"].items()}
+        exact = [replace(x, provenance=x.provenance | {"zero_uncertainty": known}) for x in some]
+        found.append(calibrate(exact, UPRIGHT).passes)
+    assert np.mean([one.chi_square for one in found]) == pytest.approx(3, abs=0.6)
+    assert sum(one.consistent and not one.leave_alike for one in found) >= 194
+
+
 def test_rows_in_reverse_order_are_named_as_that():
     (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
     back = replace(one, table=one.table.iloc[::-1].reset_index(drop=True))
