@@ -64,6 +64,7 @@ class Estimated:
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
     likelihood: float  # logarithm of the readings' probability, but for a constant
     relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
+    alike: float = 1.0  # probability that passes leave so much alike at the same places by chance
 
 
 def estimate(

@@ -4,13 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import gammaincc
+from scipy.special import fdtrc, gammaincc
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 
 _BY_CHANCE = 0.01  # probability of so much scatter; less is no chance
+_HARDLY = 1e-3  # the same of passes that leave the same; of few the test is right to a factor of 6
+_FEWEST = 3  # passes; two do not show over how many places noise remembers
+_PLACES = 20  # along the way, at which passes are held against each other
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,7 @@ class Consistency:
     stated: Floats  # shape (unknowns,); what the noise lets one expect of it
     chi_square: float  # squares of their distances from what all say, over their covariances
     degrees: int  # of freedom of that
+    alike: float  # probability that what they leave at the same places is alike by chance
 
     @property
     def probability(self) -> float:
@@ -34,6 +38,11 @@ class Consistency:
         return self.probability > _BY_CHANCE
 
     @property
+    def leave_alike(self) -> bool:
+        """Whether they leave the same at the same places, which is no noise."""
+        return self.alike <= _HARDLY
+
+    @property
     def farthest(self) -> int:
         """The pass that is farthest from the middle of all, over what its noise makes of it."""
         known = self.stated > 0  # the others are as all passes say
@@ -41,7 +50,7 @@ class Consistency:
         return int(np.argmax(away.max(axis=1)))
 
 
-def consistency(by_pass: Sequence[tuple[Floats, Floats]]) -> Consistency:
+def consistency(by_pass: Sequence[tuple[Floats, Floats]], alike: float = 1.0) -> Consistency:
     """Hold the numbers of each pass, with their covariances, against what all passes say."""
     numbers = np.array([found for found, _ in by_pass])
     covariances = np.array([covariance for _, covariance in by_pass])
@@ -56,7 +65,68 @@ def consistency(by_pass: Sequence[tuple[Floats, Floats]]) -> Consistency:
         stated,
         float(np.einsum("pi,pij,pj->", away, weights, away)),
         (len(numbers) - 1) * own,
+        alike,
     )
+
+
+def alike_by_chance(
+    left: Floats, by_number: Floats, drift: Floats, foot_x: Floats, rows: Sequence[int]
+) -> float:
+    """Probability that passes leave by chance so much alike at the same places.
+
+    What is wrong in all passes to one side is left by all at the same places; noise is not, however
+    long it remembers. `left`, `by_number` and `rows` are those of `correlated.estimate`, `drift` is
+    what a reading's zero and its slope do; what a change of the numbers explains does not count.
+    The probability is 1 of less than three passes to one side.
+    """
+    each = np.split(foot_x, np.cumsum(rows)[:-1])
+    to_right = np.array([x[-1] > x[0] for x in each])
+    found = [1.0]
+    for some in (np.flatnonzero(to_right), np.flatnonzero(~to_right)):
+        if len(some) < _FEWEST:
+            continue
+        first, last = max(each[i].min() for i in some), min(each[i].max() for i in some)
+        number = np.full(len(rows), len(some))
+        number[some] = np.arange(len(some))
+        number = np.where((foot_x < first) | (foot_x > last), len(some), np.repeat(number, rows))
+        along = np.clip((foot_x - first) / (last - first) * _PLACES, 0, _PLACES - 1)
+        cell = _PLACES * number + along.astype(int)  # behind all passes what does not count
+        means = np.concatenate(
+            [_means(one, cell, len(some)) for one in (left[:, :, None], by_number, drift)]
+        )
+        means = means[:, :, np.isfinite(means).all(axis=(0, 1))]
+        shapes = np.linalg.qr(means[1:].mean(axis=1).T)[0]
+        # Each pass has a zero of its own, so of its drift more than of the rest is chance.
+        by_drift = means[0] @ shapes[:, by_number.shape[2] :]
+        rest = means[0] - means[0] @ shapes @ shapes.T
+        freedom = len(shapes) - len(shapes.T)
+        found += [_by_chance(by_drift, drift.shape[2]), _by_chance(rest, freedom)]
+    return min(1.0, max(len(found) - 1, 1) * min(found))
+
+
+def _means(columns: Floats, cell: Integers, passes: int) -> Floats:
+    """Means of columns (n, readings, m) at places of passes, shape (m, passes, ...)."""
+    cells, (n, readings, m) = passes * _PLACES, columns.shape
+    counts = np.bincount(cell, minlength=cells)[:cells]
+    sums = [np.bincount(cell, one, cells)[:cells] for one in columns.reshape(n, -1).T]
+    with np.errstate(invalid="ignore"):  # of no stations there is no mean
+        means = np.reshape(sums / counts, (readings, m, passes, _PLACES))
+    return means.transpose(1, 2, 0, 3).reshape(m, passes, -1)
+
+
+def _by_chance(curves: Floats, most: int) -> float:
+    """Probability that curves of noise, shape (passes, places), have so large a mean.
+
+    An F test of curves, with Box's degrees of freedom, `most` or less (Shen and Faraway 2004).
+    """
+    passes, mean = len(curves), curves.mean(axis=0)
+    n = passes - 1
+    products = (curves - mean) @ (curves - mean).T / n
+    trace, square = np.trace(products), np.sum(products**2)
+    # Both without bias, for curves of a normal distribution: (tr S)^2 and tr S^2 of few are not.
+    of_squares = (n + 1) * (trace**2 - 2 * square / (n + 1)) / n
+    freedom = of_squares / max(square - trace**2 / n, of_squares / most)
+    return float(fdtrc(freedom, n * freedom, passes * (mean @ mean) / trace))
 
 
 def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
@@ -67,9 +137,14 @@ def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
     for one in passes:
         require("readings", one, Readings, "as Readings(table, beam)")
         if one.beam != passes[0].beam:
+            different = (
+                f"L = {x.beam.length:g}, EI = {x.beam.base_rigidity:g}, r = {x.beam.radius:g} "
+                f"({x.source})"
+                for x in (passes[0], one)
+            )
             raise InputError(
-                "vibrissa",
-                f"another one in {one.source} than in {passes[0].source}",
+                "vibrissae",
+                " and ".join(different),
                 "one and the same in all passes",
                 "passes of different rigs say nothing together: take each rig's own",
             )

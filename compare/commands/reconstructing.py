@@ -33,8 +33,6 @@ from compare.commands.sweeping import deviations, find_body
 from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
-from compare.show.figures.geometry import reconstruction
-from compare.show.figures.space import sweep_in_space
 from compare.show.fits import band_document, band_summary, object_document, object_summary
 from compare.show.numbers import quantity
 from compare.show.passes import lag_remembered
@@ -69,6 +67,8 @@ def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: st
         terminal.show(*object_summary(fitted, sweeps[0].beam.si))
         terminal.keep(folder / "object.json", object_document(fitted))
         with waiting("drawing"):
+            from compare.show.figures.space import sweep_in_space
+
             picture = sweep_in_space(SweepScene.of(sweeps[0], fitted.body))
         terminal.keep(folder / "object.png", picture)
     return fitted.explains
@@ -84,6 +84,8 @@ def _band_of(sweeps: list[SpatialReadings], place: Path, noise: float) -> bool:
         for name, body in (("inner", found.inner), ("outer", found.outer)):
             terminal.keep(folder / f"{name}.ply", solid_ply(body.corners))
         with waiting("drawing"):
+            from compare.show.figures.space import sweep_in_space
+
             inner, outer = (SweepScene.of(sweeps[0], one) for one in (found.inner, found.outer))
             picture = sweep_in_space(inner, outer.faces)
         terminal.keep(folder / "object.png", picture)
@@ -129,6 +131,9 @@ def in_the_plane(
         require_beam(found, one)
     with waiting("fitting"):
         fitted = None if family is None else fit_object(passes, family, level)
+    # The fit takes 60 MB, and what draws 50: it is loaded when the fit has gone.
+    from compare.show.figures.geometry import reconstruction
+
     with output_folder(place) as folder:
         for one in passes:
             note_rows(one)

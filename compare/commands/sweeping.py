@@ -21,7 +21,6 @@ from compare.commands import terminal
 from compare.commands.output import waiting, warn
 from compare.commands.sweep_lines import print_sweep
 from compare.read.job import AnyJob
-from compare.show.figures.space import sweep_in_space
 from compare.show.scene import SweepScene
 
 AnyReadings: TypeAlias = Readings | SpatialReadings
@@ -96,6 +95,8 @@ def find_body(
     terminal.print_written(write_ply(cloud, folder / "points.ply"))
     if with_picture:
         with waiting("drawing"):
+            from compare.show.figures.space import sweep_in_space
+
             picture = sweep_in_space(SweepScene.of(readings, body))
         terminal.keep(folder / "space.png", picture)
     diverged = "status" in readings.table and bool((readings.table["status"] == "diverged").any())

@@ -1,14 +1,17 @@
 """What a pass of a rig cannot be: a contact called free, a stuck channel, a clock that jumps."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from analytic import CLAMP_READINGS, InputError
+from analytic import CLAMP_READINGS, Direction, InputError
 from analytic.from_clamp.noise import scatter
 from analytic.problem.arrays import Booleans, Floats
 from compare.read.drift import FEWEST
 from compare.read.loaded import loaded_from
 
 _SIGMAS = 6.0  # of the noise
+_UNITS = 30.0  # times the noise, of all three readings; units differ by more
 _DRIFT = 0.25  # of the largest reading; more is no drift of a zero
 _STILL = 10  # rows that are equal, at least, while ...
 _MOVING = 0.1  # ... another reading changes by this part of its largest one
@@ -51,6 +54,30 @@ def check_drift(drift: Floats, values: Floats, name: str) -> None:
                 "one of them is in contact, or the sensor was reset: look at the pass's picture"
             )
             raise InputError("passes.free_before and free_after", what, allowed, remedy)
+
+
+def check_object(values: Floats, noise: Floats, way: Direction, name: str, begins: bool) -> None:
+    """Refuse a pass without a load, or with that of one the other way, if it begins free."""
+    loads = int(np.any(np.abs(values) > _SIGMAS * noise[:, None], axis=0).sum())
+    if loads < FEWEST:
+        what, remedy = f"under load at {loads} rows", "it touches no object: leave the pass out"
+        raise InputError(name, what, f"{_SIGMAS:g} times the noise at {FEWEST} or more", remedy)
+    shown = "right" if np.nansum(values[-1]) < 0 else "left"
+    if begins and shown != way:
+        what = f"to the {way} by foot_x, with the moment of a sweep to the {shown}"
+        remedy = "reverse its rows, or change the sign of foot_x or of the readings (gain)"
+        raise InputError(name, what, "to one side, in the order of the motion", remedy)
+
+
+def check_units(values: Floats, stretches: Iterable[Booleans], name: str) -> None:
+    """Refuse two free stretches whose noise is of different units."""
+    with np.errstate(all="ignore"):  # without noise there is no ratio; too large is refused later
+        levels = [np.nanstd(values[:, here], axis=1) for here in stretches]
+        ratio = levels[-1] / levels[0]
+    if np.all(ratio > _UNITS) or np.all(ratio < 1 / _UNITS):
+        what = f"a noise of {name} that changes {ratio[0]:.2g} times between them"
+        remedy = "the file has two units, or the amplifier was switched: split it there"
+        raise InputError("passes.free_before and free_after", what, "much the same", remedy)
 
 
 def check_channels(values: Floats, name: str) -> None:

@@ -14,8 +14,16 @@ from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.drift import FEWEST, Bent, Zero, bent, no_zero, zero_of
 from compare.read.kinds import TEXTS
-from compare.read.nonsense import check_ahead, check_back, check_channels, check_drift, check_free
-from compare.read.rig import cells, read_sweeps
+from compare.read.nonsense import (
+    check_ahead,
+    check_back,
+    check_channels,
+    check_drift,
+    check_free,
+    check_object,
+    check_units,
+)
+from compare.read.rig import cells, check_recorded, read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
@@ -150,13 +158,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
         dropped[reason] = int(getattr(record, reason).sum())
     foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
     said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
-    for reading, row in zip(CLAMP_READINGS, read, strict=True):
-        if not np.isfinite(row).any():
-            what, remedy = (
-                f"{reading} of {name}",
-                "the channel was not recorded: leave the pass out",
-            )
-            raise InputError(what, "without any number", "read in some rows", remedy)
+    check_recorded(raw, name)
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
@@ -172,10 +174,12 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
                 stated = getattr(rig.passes, which)
                 check_free(which, stated, foot_x, before, here, name, raw.beam.si)
             zero = zero_of(foot_x, before, stretches, name)
+            check_units(before, stretches.values(), name)
             values = before - zero.line
             check_drift(zero.drift, values, name)
             with np.errstate(over="ignore"):  # such numbers are refused later
                 known = np.nanstd(values[:, free], axis=1)
+            check_object(values, known, direction, name, "free_before" in stretches)
             provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:
         fault = error

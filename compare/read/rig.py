@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic import SENSED, Beam, Direction, InputError, Readings
+from analytic import CLAMP_READINGS, SENSED, Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
@@ -78,7 +78,18 @@ def read_measured(
             "one" if direction is None else f"one to the {direction}",
             "choose its direction (--direction left, direction='left'), or split it",
         )
+    check_recorded(chosen[0], _called(source))
     return chosen[0]
+
+
+def check_recorded(readings: Readings, called: str) -> None:
+    """Refuse a channel without any number."""
+    for name in CLAMP_READINGS:
+        if not np.isfinite(readings.values(name)).any():
+            remedy = "the channel was not recorded: leave this one out"
+            raise InputError(
+                f"{name} of {called}", "without any number", "read in some rows", remedy
+            )
 
 
 def read_sweeps(

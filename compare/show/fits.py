@@ -9,6 +9,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, Beam, Calibration, FittedObject
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.unknowns import LAG, OF_THE_FOOT
+from analytic.from_clamp.passes import Consistency
 from analytic.problem.quantities import QUANTITIES
 from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
@@ -42,7 +43,7 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
         head, of = [*head, "passes scatter by"], f" of {len(passes.numbers)} passes"
     yield Table(f"From {calibration.stations} stations{of}", head, rows, words=(0, 4))
     if passes is not None:
-        yield Text(consistency_line(passes))
+        yield from _of_passes(passes)
         if not passes.consistent:
             yield Text(
                 "what the passes scatter by says more than the intervals, which are of noise"
@@ -86,7 +87,7 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
             words=(0, 2),
         )
     if isinstance(found, FittedObject) and found.passes is not None:
-        yield Text(consistency_line(found.passes))
+        yield from _of_passes(found.passes)
     yield from _left(found)
     if not found.explains:
         yield Text(
@@ -134,6 +135,7 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
             "chi_square": passes.chi_square,
             "degrees": passes.degrees,
             "probability": passes.probability,
+            "alike": passes.alike,
         },
     }
 
@@ -169,6 +171,15 @@ def band_document(found: ConvexBand) -> dict[str, Any]:
         "seen": found.seen,
         "widest": found.widest if found.seen else None,
     }
+
+
+def _of_passes(passes: Consistency) -> Iterator[Text]:
+    yield Text(consistency_line(passes))
+    if passes.leave_alike:
+        yield Text(
+            f"what is left is alike in all of them (p = {passes.alike:.2g}), so it is no noise: "
+            "something else is not as stated, and the intervals do not hold"
+        )
 
 
 def _interval(name: str, found: Estimate) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from analytic.from_clamp.calibration.unknowns import LAG, OFFSET, UNKNOWNS, Soug
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
-from analytic.from_clamp.passes import Consistency, as_passes, consistency
+from analytic.from_clamp.passes import Consistency, alike_by_chance, as_passes, consistency
 from analytic.from_clamp.reconstruct import doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
@@ -81,6 +81,8 @@ class Calibration(Shown):
         Root mean square of what the fit leaves, over the noise: 1 if the case is right in
         everything else, less for readings without noise. If it is more, noise that remembers makes
         the intervals wider; they still miss what a wrong object does to all stations alike.
+    misfit_shows : bool
+        Whether the fit leaves more than chance and the noise, known to a tenth, do.
     noise : NoiseFound
         What of the noise remembers: correlation, memory and hum, of force_x, force_y, moment_z.
     jitter : float
@@ -104,6 +106,7 @@ class Calibration(Shown):
     correlation: Floats
     stations: int
     misfit: float
+    misfit_shows: bool
     noise: NoiseFound
     jitter: float
     passes: Consistency | None
@@ -112,15 +115,10 @@ class Calibration(Shown):
     undistinguished: Undistinguished | None
 
     @property
-    def misfit_shows(self) -> bool:
-        """Whether the fit leaves more than chance and the noise, known to a tenth, do."""
-        freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
-        return not explained_by_noise(self.misfit, freedom)
-
-    @property
     def explains(self) -> bool:
         """Whether noise alone explains what the fit leaves, and what passes differ by."""
-        return not self.misfit_shows and (self.passes is None or self.passes.consistent)
+        of_all = self.passes is None or (self.passes.consistent and not self.passes.leave_alike)
+        return not self.misfit_shows and of_all
 
     def _tiles(self) -> dict[str, object]:
         return {
@@ -222,7 +220,7 @@ def calibrate(
         if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
             raise _not_distinguished(names, covariance, i, hidden)
     sought = fit.sought(numbers)
-    alike = consistency(known.by_pass) if len(passes) > 1 else None
+    alike = consistency(known.by_pass, known.alike) if len(passes) > 1 else None
 
     def intervals(halves: Floats) -> dict[str, Estimate]:
         return {
@@ -239,6 +237,7 @@ def calibrate(
         covariance / np.outer(deviations, deviations),
         len(fit.measured.foot_x),
         misfit,
+        not explained_by_noise(misfit, fit.freedom, fit.measured.vague),
         known.noise,
         float(fit.measured.spread[0]),
         alike,
@@ -258,8 +257,7 @@ def doubt_of_case(readings: Readings, case: Case) -> str | None:
 def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
-    freedom = fit.measured.readings.size - len(fit.kinds)
-    jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * freedom else None
+    jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * fit.freedom else None
     if jittered is not None:
         fit = fit.of(jittered)
     first = numbers
@@ -268,12 +266,17 @@ def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, E
     )
     if relief and jittered is not None:
         cost = float(np.sum(fit.misses(first) ** 2))  # over that noise of which the relief is
-    return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / freedom)), known
+    return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / fit.freedom)), known
 
 
-def explained_by_noise(misfit: float, freedom: int) -> bool:
-    """Whether what is left is no more than chance and the noise, known to a tenth, make of it."""
-    return bool(misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
+def explained_by_noise(misfit: float, freedom: int, vague: float = 0.0) -> bool:
+    """Whether what is left is no more than chance and the noise, known to a tenth, make of it.
+
+    And not much more than the noise, however vaguely that is known: `Measured.vague`.
+    """
+    chance = _CHANCE * np.sqrt(1 / freedom / 2)
+    more = _CHANCE * np.sqrt((1 / freedom + vague) / 2)
+    return bool(misfit <= _NOISE_KNOWN_TO + max(chance, min(more, _SATISFIED - _NOISE_KNOWN_TO)))
 
 
 def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
@@ -295,6 +298,11 @@ def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
             remedy = "check foot_x, units and object"
             if all(kind.name != OFFSET for kind in fit.kinds):
                 remedy += ", or fit offset too"
+            if turned := fit.measured.turned:
+                remedy = (
+                    f"the moment of {turned} is that of a sweep to the other side than foot_x "
+                    "goes: reverse the rows, or change a sign"
+                )
             raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
@@ -334,7 +342,8 @@ def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
     over = np.array(sizes)
     left, slopes = expected - measured.readings, measured.slopes(expected)
     jitter, own = foot_jitter(left.T / over, slopes.T / over, measured.rows)
-    return replace(measured, spread=np.array([jitter, *(own * over)])) if jitter else None
+    own = np.maximum(own * over, measured.free)
+    return replace(measured, spread=np.array([jitter, *own])) if jitter else None
 
 
 def _knowing_the_noise(
@@ -374,7 +383,11 @@ def _knowing_the_noise(
             break
         numbers = moved
     curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
-    return numbers, replace(found, by_pass=by_pass), relieved[0] if curved else 0.0
+    straight, bent = np.split(nuisances, [2 * len(CLAMP_READINGS)], axis=2)
+    explained = np.concatenate([by_number, bent], axis=2) if curved else by_number
+    alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
+    found = replace(found, by_pass=by_pass, alike=alike)
+    return numbers, found, relieved[0] if curved else 0.0
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -55,6 +55,10 @@ class LeastSquaresFit(ABC):
                 self._sweeps[sweep] = here, here[solved.astype(int)]
         self._last: tuple[Floats, list[Expected] | None] = np.empty(0), None
 
+    @property
+    def freedom(self) -> int:
+        return self.measured.readings.size - len(self.kinds)
+
     @abstractmethod
     def sought(self, numbers: Floats) -> Sought:
         """What these numbers make of the case."""

@@ -36,6 +36,12 @@ class Measured:
     rows: tuple[int, ...]  # how many stations each pass has
     zero: Floats  # shape (3,); standard uncertainty of the zero of each reading
     bend: Floats  # shape (3,); the same of a bend of its drift, in the middle of a pass
+    # Shape (3,); of the free stretches' noise, if that counts: it may hum, or remember, so that it
+    # hardly shows from row to row. 0 otherwise.
+    free: Floats
+    # Relative variance of the noise's square beside that of white noise of as many stations: what
+    # remembers shows less of its size, where it is free and under load.
+    vague: float
 
     @classmethod
     def of(
@@ -54,6 +60,8 @@ class Measured:
             tuple(n for one in each for n in one.rows),
             np.sqrt(np.mean([one.zero**2 for one in each], axis=0)),
             np.sqrt(np.mean([one.bend**2 for one in each], axis=0)),
+            np.sqrt(np.mean([one.free**2 for one in each], axis=0)),
+            float(np.mean([one.vague for one in each])) / len(each),
         )
 
     @property
@@ -66,6 +74,14 @@ class Measured:
         """To where the foot moves in each pass."""
         moved = [self.foot_x[one][-1] - self.foot_x[one][0] for one in self.passes]
         return ["right" if way > 0 else "left" for way in moved]
+
+    @property
+    def turned(self) -> str:
+        """Which passes bend the vibrissa to where the foot goes, as none does; empty if none."""
+        bends = ["left" if self.readings[-1, one].sum() < 0 else "right" for one in self.passes]
+        found = [f"pass {i}" for i, pair in enumerate(zip(bends, self.ways, strict=True), 1)
+                 if pair[0] == pair[1]]  # fmt: skip
+        return ", ".join(found)
 
     def slopes(self, readings: Floats) -> Floats:
         """Derivatives of some readings over the foot position, within each pass."""
@@ -108,25 +124,34 @@ def measured_under_load(
     known = reading_noise(readings) if stated is None else stated
     spread = np.array([known.get(name, 0.0) for name in SENSED])
     least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
+    of_free = readings.provenance.get("free_noise", {})
+    free = np.array([of_free.get(name, 0.0) for name in CLAMP_READINGS])
     spread[1:] = np.maximum(spread[1:], least)
     x = readings.values("foot_x")
     force = np.hypot(
         readings.values("force_x") + carried[0], readings.values("force_y") + carried[1]
     )
-    # What remembers, and hum, show where a rig's pass is free, but not from row to row.
-    free = readings.provenance.get("free_noise", {})
-    noise = np.maximum(spread[1:3], [free.get(name, 0.0) for name in CLAMP_READINGS[:2]])
-    loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*noise)))
+    level = np.hypot(*np.maximum(spread[1:3], free[:2]))
+    loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * level))
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded
     if len(order) < fewest:
-        name = "stations under load, but for those next to the snap-off"
+        name = f"stations of {readings.source} under load, but for those next to the snap-off"
         allowed = f"{fewest} or more, {_PER_UNKNOWN} for each unknown"
-        remedy = "sweep further or with more stations, or state less noise"
+        remedy = "sweep further or with more stations, state less noise, or leave the pass out"
         raise InputError(name, len(order), allowed, remedy)
     found = np.stack([readings.values(n)[order] for n in CLAMP_READINGS])
     zero = zero_uncertainty(readings, np.abs(found).max(axis=1))
-    return Measured(x[order], found, spread, (len(order),), zero, bend_uncertainty(readings))
+    free = free if stated is None else np.zeros(3)
+    # From row to row there is 1 - rho of the variance of a[i + 1] = rho a[i] + white, of which as
+    # many rows say (1 - rho^2) / (1 + rho^2) times as much as of white noise.
+    rho = 1 - (spread[1:] / np.maximum(spread[1:], free)) ** 2
+    unloaded = max(int(readings.trusted.sum()) - len(loaded), 1)
+    repeats = np.mean(rho**2 * (1 + rho**2) / (1 - rho**2)) / len(CLAMP_READINGS)
+    vague = float(repeats * (1 / len(order) + 1 / unloaded))
+    spread[1:] = np.maximum(spread[1:], free)
+    bend, rows = bend_uncertainty(readings), (len(order),)
+    return Measured(x[order], found, spread, rows, zero, bend, free, vague)
 
 
 def _kept(readings: Readings, loaded: Integers) -> Integers:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.from_clamp.calibration.fit import VibrissaFit
-from analytic.from_clamp.calibration.measured import Measured
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Direction, Sweep
@@ -93,14 +92,8 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
             loaded = swept.trusted & (swept.values("force_y") > 0)
             table = swept.table[loaded].iloc[: -max(2, _STATIONS // 20)]
             readings = table[list(CLAMP_READINGS)].to_numpy().T
-            measured = Measured(
-                table["foot_x"].to_numpy() + found.offset,
-                readings,
-                fit.measured.spread,
-                (len(table),),
-                fit.measured.zero,
-                fit.measured.bend,
-            )
+            foot_x = table["foot_x"].to_numpy() + found.offset
+            measured = replace(fit.measured, foot_x=foot_x, readings=readings, rows=(len(table),))
             yield name, VibrissaFit(measured, replace(changed, sweep=sweep), fit.kinds)
         except (InputError, ArithmeticError, ValueError):
             continue

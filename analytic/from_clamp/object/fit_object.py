@@ -251,7 +251,7 @@ def _object(
         found[kind.name] = Estimate(
             *(float(unit * x) for x in (number, number - half, number + half))
         )
-    alike = consistency(known.by_pass) if len(fit.measured.rows) > 1 else None
+    alike = consistency(known.by_pass, known.alike) if len(fit.measured.rows) > 1 else None
     stations = len(fit.measured.foot_x)
     data = fit.measured.readings.size
     return FittedObject(
@@ -265,7 +265,8 @@ def _object(
             ).items()
         },
         misfit=misfit,
-        explains=explained_by_noise(misfit, data - len(kinds)),
+        explains=explained_by_noise(misfit, fit.freedom, fit.measured.vague)
+        and (alike is None or not alike.leave_alike),
         bic=-2 * known.likelihood + len(kinds) * float(np.log(data)),
         stations=stations,
         noise=known.noise,

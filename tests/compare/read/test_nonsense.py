@@ -101,6 +101,17 @@ def jumped(row, by):
     return lambda values: values + by * (np.arange(values.shape[1]) >= row) * [[1], [0], [0], [0]]
 
 
+def without_contact(values):
+    rng = np.random.default_rng(7)
+    values[1:] = 0.05 + 0.01 * rng.standard_normal(values[1:].shape)
+    return values
+
+
+def two_units(values):
+    values[1:, 350:] *= 1e-3
+    return values
+
+
 @pytest.mark.parametrize(
     ("change", "stretches", "why"),
     [
@@ -112,6 +123,9 @@ def jumped(row, by):
         (stuck, (0.2, 0.2), r"moment_z = .* over 80 rows of pass: it is stuck"),
         (jumped(250, -0.2), (0.2, 0.2), r"foot_x = a jump by -0\.2.* ahead, while"),
         (jumped(350, 0.15), (0.2, 0.2), r"foot_x = a jump by \+0\.14.* back"),
+        (without_contact, (0.2, 0.2), "pass = under load at 0 rows: .* touches no object"),
+        (lambda x: x[:, ::-1], (0.2, 0.2), "pass = to the right by foot_x, .* reverse its rows"),
+        (two_units, (0.2, 0.2), r"changes 0\.001\d* times between them: .* has two units"),
         (lambda x: x[:, :1], (0.2, 0.2), r"5 or more"),
     ],
 )  # fmt: skip

@@ -155,3 +155,8 @@ def test_clamp_and_friction_come_with_the_beam(tmp_path):
     beam.write_text("[beam]\n[support]\nrotational_stiffness = 1e-9\n")
     with pytest.raises(InputError, match="hundredth"):
         read_measured(tmp_path / "rig.csv", beam)
+
+
+def test_a_channel_without_a_number_is_named():
+    with pytest.raises(InputError, match="moment_z of table = without any number"):
+        read_measured(TABLE.assign(Mz=np.nan), beam=BEAM, columns=COLUMNS)
