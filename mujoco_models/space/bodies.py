@@ -25,20 +25,24 @@ _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second t
 # random points of six ellipsoids distances were off by 5.2 of these at most, and normals by 2.6
 # times the angle by which the sharpest place recedes by one.
 _OFF, _TURNED = 5.2, 2.6
-_SHARPEST, _FLATTEST = 1e-4, 1e3  # L, radii of curvature of a contour that a cylinder follows
+_SHARPEST = 1e-4  # L, radius of curvature of a contour that a cylinder follows
+_LARGEST = 10.0  # L, of such a cylinder: of a radius of 1,000 L MuJoCo's distances are off by 2e-8
 _HALF_LENGTH = 50.0  # radii; the caps must be farther away than the centre
 _DENSE = 4001  # parameters at which a contour is looked at for what is within reach
 
 
 class Circle(NamedTuple):
-    """A cylinder that osculates a prism along one of its lines; lengths in L."""
+    """A cylinder that touches a prism along one of its lines; lengths in L."""
 
     centre: Floats
     """A point of its axis, shape (3,)."""
     radius: float
+    """That of the contour's circle of curvature, if it is no larger than `_LARGEST`."""
+    flatter: float
+    """Of its curvature that of the contour."""
 
 
-Osculating: TypeAlias = Callable[[Floats, Floats], Circle]
+Osculating: TypeAlias = Callable[[Floats], Circle]
 
 
 @dataclass(frozen=True)
@@ -54,8 +58,8 @@ class Shape:
     # cannot remove.
     blur: float = 0.0
     off: float = 0.0  # error of its distances [L], likewise
-    # Of a prism: maps a normal and a point near by to the cylinder that has the contour's circle of
-    # curvature there. MuJoCo's cylinder follows the contact; where the rest of the body is, a mesh
+    # Of a prism: maps a point near by to the cylinder that has the contour's circle of curvature
+    # there. MuJoCo's cylinder follows the contact; where the rest of the body is, a mesh
     # says.
     osculating: Osculating | None = None
     inscribed: float = 0.0  # how far that mesh may be off the contour [L]
@@ -100,21 +104,17 @@ def _prism(
     grid = body.contour.at(body.contour.parameter(np.linspace(*alpha, _DENSE)))
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = grid.stretch / grid.turning
-    if not ((radius > _SHARPEST) & (radius < _FLATTEST)).all():
+    if not (radius > _SHARPEST).all():
         _add_mesh(spec, mesh)
         return Shape(f"prism of a polygon of {len(line)} corners", mesh)
     _add_mesh(spec, mesh, OUTLINE)
     _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, centre, body.frame[2], [1.0, _HALF_LENGTH, 0.0])
 
-    def osculating(normal: Floats, near: Floats) -> Circle:
-        slope = np.arctan2(normal @ body.frame[0], -(normal @ body.frame[1]))
-        slope = np.clip(slope, *alpha)
-        point = body.contour.at(body.contour.parameter(np.array([slope])))
-        size = float(point.stretch[0] / point.turning[0])
-        x = float(point.xi[0]) - size * np.sin(slope)
-        y = float(point.eta[0]) + size * np.cos(slope)
-        along = float((near - body.origin) @ body.frame[2])
-        return Circle(body.origin + np.array([x, y, along]) @ body.frame, size)
+    def osculating(near: Floats) -> Circle:
+        spot = body.nearest(near, 0.0)
+        curvature = float(np.trace(spot.turning))
+        size = 1 / max(curvature, 1 / _LARGEST)
+        return Circle(spot.point - size * spot.normal, size, curvature * size)
 
     label = "MuJoCo's cylinder, with the contour's circle of curvature where the contact is"
     sagitta = float(np.hypot(*np.diff(line, axis=0).T).max()) ** 2 / (8 * float(radius.min()))

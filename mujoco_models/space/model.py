@@ -16,9 +16,8 @@ from mujoco_models.model.clamp import by_contacts
 from mujoco_models.model.stiffness import stiffen
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.space.assembly import assembled
-from mujoco_models.space.bodies import OUTLINE, Shape
+from mujoco_models.space.bodies import OUTLINE, Circle, Shape
 
-_FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
 _FAR = 10.0  # L; beyond, MuJoCo need not say how far
 
 
@@ -57,6 +56,7 @@ class SpaceModel:
         self.beam, self.layout = beam, beam.layout
         self.shape, self.radius, self.contact_stiffness = shape, radius, contact_stiffness
         self.tangent = tangent
+        self._flatter = 1.0  # how fast the body's normals turn, by those of the geom in its place
         self.ends = np.append(self.layout.joints[1:], 1.0)
         """Arc length of each link's end."""
         self.model = assembled(spec, len(self.ends), tangent, radius)
@@ -143,29 +143,24 @@ class SpaceModel:
     def touch(self, link: int, s: float) -> Touch:
         """MuJoCo's nearest point of the body to a bead on a link."""
         centre = self.centre(link, s)
-        normal, distance = self._nearest(link, centre)
         if self.shape.osculating is not None:
-            for _ in range(_FOLLOWED):
-                before = normal
-                self._follow(normal, centre)
-                normal, distance = self._nearest(link, centre)
-                if np.abs(normal - before).max() < _SAME_NORMAL:
-                    break
+            self._put(self.shape.osculating(centre))
+        normal, distance = self._nearest(link, centre)
         return Touch(centre, normal, distance)
 
     def contact(self, touch: Touch) -> Floats:
         """Where the body is touched."""
         return np.asarray(touch.centre - (self.radius + touch.distance) * touch.normal)
 
-    def _follow(self, normal: Floats, centre: Floats) -> None:
+    def _put(self, circle: Circle) -> None:
         """Put MuJoCo's cylinder where it has the prism's circle of curvature."""
-        assert self.shape.osculating is not None
-        circle = self.shape.osculating(normal, centre)
         model, body = self.model, self._body
         length = circle.radius * model.geom_size[body, 1] / model.geom_size[body, 0]
         model.geom_size[body, :2] = circle.radius, length
         model.geom_rbound[body] = np.hypot(circle.radius, length)
         model.geom_pos[body] = self.data.geom_xpos[body] = circle.centre
+        nearer = circle.radius + self.radius
+        self._flatter = circle.flatter * nearer / (circle.radius + circle.flatter * self.radius)
 
     def turning(self, link: int, touch: Touch) -> Floats:
         """How MuJoCo's normal turns as the bead's centre moves, by differences."""
@@ -174,7 +169,7 @@ class SpaceModel:
             sides @ (self._nearest(link, ahead)[0] - self._nearest(link, behind)[0])
             for ahead, behind in ((touch.centre + step * s, touch.centre - step * s) for s in sides)
         ]
-        rates = np.array(by_side) / (4 * step)
+        rates = self._flatter * np.array(by_side) / (4 * step)
         return np.asarray(sides.T @ (rates + rates.T) @ sides)
 
     def probe(self, link: int, centre: Floats) -> Touch:

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from analytic import Beam, InputError, catenary, parabola
+from analytic import Beam, InputError, catenary, circle, parabola
 from analytic.space import (
     FootPath,
     SpatialCase,
@@ -102,6 +102,23 @@ def test_smooth_bodies_agree_with_the_closed_form(name):
         (found.values(*CONTACT_POINT) - exact.values(*CONTACT_POINT))[on], axis=1
     )
     assert apart.max() < 2e-3
+
+
+# Flat within reach, and touched on the side above its widest place.
+FLAT = prism(parabola(0.005, 0.6), (0.1, 0.05, 1)), [[9.8, 0.1], [7.4, 0.0]]
+BESIDE = prism(circle(0.17, (0.0, 0.594)), (0.368, 0.412, 0.834)), [[0.4, 0.02], [-0.4, 0.01]]
+
+
+@pytest.mark.parametrize(("body", "points"), [FLAT, BESIDE])
+def test_prisms_are_touched_where_they_are_flat(body, points):
+    """A cylinder of 100 L was off by more than rest allows, and a side had none."""
+    case = SpatialCase(Beam(radius=2e-3), body=body, path=FootPath(points, stations=15))
+    exact, found = solve_space(case), simulate_space(case, SpatialSettings(segments=20))
+    assert (found.table["status"] == "ok").all()
+    assert (found.touching == exact.touching).all() and exact.touching.sum() > 4
+    assert worst_rms(exact, found) < 2e-3
+    for ours, theirs in zip(left(found), left(exact), strict=True):
+        assert ours == pytest.approx(theirs, abs=2e-3)
 
 
 @pytest.mark.slow

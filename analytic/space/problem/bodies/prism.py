@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.polygon import Polygon
 from analytic.problem.errors import require
 from analytic.problem.numbers import positive
@@ -83,8 +83,9 @@ class Prism(Body):
     def _foot_of_perpendicular(self, x: float, y: float) -> float:
         """Parameter of the contour's point from which (x, y) lies along the normal."""
         places = np.linspace(*self.contour.t_range, _PLACES)
-        ahead, _ = self._ahead(places, x, y)
-        left, right = self.contour.at(places[[0, -1]]).xi
+        there = self.contour.at(places)
+        ahead, _ = _ahead(there, x, y)
+        left, right = there.xi[[0, -1]]
         if ahead[0] <= 0 and x <= left:
             return float(places[0])
         if ahead[-1] >= 0 and x >= right:
@@ -99,21 +100,15 @@ class Prism(Body):
         t = low + (high - low) * float(ahead[end - 1] / (ahead[end - 1] - ahead[end]))
         rounding = _ROUNDING * float(places[-1] - places[0])
         while high - low > rounding:  # Newton's method, and bisection where it leaves the bounds
-            value, falling = (float(found[0]) for found in self._ahead(np.array([t]), x, y))
+            value, falling = (
+                float(found[0]) for found in _ahead(self.contour.at(np.array([t])), x, y)
+            )
             low, high = (t, high) if value > 0 else (low, t)
             step = value / falling if falling > 0 else np.inf
             if abs(step) <= rounding:
                 return t + step
             t = t + step if low < t + step < high else (low + high) / 2
         return t
-
-    def _ahead(self, t: Floats, x: float, y: float) -> tuple[Floats, Floats]:
-        """How far (x, y) is ahead of the normals of these points, and how fast that falls."""
-        point = self.contour.at(t)
-        cosine, sine = np.cos(point.alpha), np.sin(point.alpha)
-        x_off, y_off = x - point.xi, y - point.eta
-        falling = point.stretch + point.turning * (x_off * sine - y_off * cosine)
-        return x_off * cosine + y_off * sine, falling
 
     def scaled(self, factor: float) -> "Prism":
         return replace(self, contour=self.contour.scaled(factor), origin=factor * self.origin)
@@ -128,6 +123,14 @@ class Prism(Body):
         grid[..., :2] = line[:, None]
         grid[..., 2] = depth
         return grid_patches(self.origin + grid @ self.frame)
+
+
+def _ahead(point: ContourPoint, x: float, y: float) -> tuple[Floats, Floats]:
+    """How far (x, y) is ahead of the normals of points, and how fast that falls along them."""
+    cosine, sine = np.cos(point.alpha), np.sin(point.alpha)
+    x_off, y_off = x - point.xi, y - point.eta
+    falling = point.stretch + point.turning * (x_off * sine - y_off * cosine)
+    return x_off * cosine + y_off * sine, falling
 
 
 def cylinder(radius: float, through: Vector, axis: Vector) -> Cylinder:
