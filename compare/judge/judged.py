@@ -58,7 +58,8 @@ class Judged(SweepPair[Sweep]):
         size, unit = self.reference.running_unit
         yield (
             f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
-            f"{self.reference.source}, by {self.stations} of {len(self.candidate.table)} stations"
+            f"{self.reference.source}; compared at {self.stations} of "
+            f"{len(self.candidate.table)} stations"
         )
         if self.likely is not None:
             yield f"  likely: {self.likely}"

@@ -129,7 +129,8 @@ class SpaceFile(Table):
 
 def job_in_space(file: TomlFile) -> SpaceJob:
     found = validated(SpaceFile, file.tables, file.place)
-    case = found.case(file.path.parent, found.name or name_of(file.path))
+    with file.naming():
+        case = found.case(file.path.parent, found.name or name_of(file.path))
     limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     motion = None if found.motion is None else found.motion.build(case.beam)
     return SpaceJob(case, found.mujoco, limits, motion=motion)

@@ -211,7 +211,8 @@ def job_in_the_plane(file: TomlFile) -> Job:
     if isinstance(given, list) and given:  # several objects, [[profile]]
         each = [{**file.tables, "profile": one} for one in given]
     found, *others = (validated(CaseFile, tables, file.place) for tables in each)
-    case = found.case(file.path.parent, found.name or name_of(file.path), others)
+    with file.naming():
+        case = found.case(file.path.parent, found.name or name_of(file.path), others)
     moved, own = found.motion, found.model
     motion = None if moved is None else moved.build(case.beam)
     if own is not None:

@@ -2,8 +2,8 @@
 
 import re
 import tomllib
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -17,6 +17,7 @@ KeyPlace: TypeAlias = Callable[[Sequence[str]], str]
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
 _SHOWN = 60  # characters of a key
 _LOOKED_AT = 200  # lines that may state a key
+_WITH_UNIT = re.compile(r"[-+]?[\d.]\S* \S")
 _NO_FLOAT = re.compile(r"\d{309}|0[xob][\da-f_]{256}", re.IGNORECASE)
 
 
@@ -60,6 +61,19 @@ class TomlFile:
         line = next((f", line {one}" for one in known if one), "")
         name = ".".join(key if len(key) <= _SHOWN else f"{key[:_SHOWN]}..." for key in keys)
         return f"{self.path}{line}: {name}"
+
+    @contextmanager
+    def naming(self) -> Iterator[None]:
+        """Errors of what is built from the file name the line of their key."""
+        try:
+            yield
+        except InputError as error:
+            table, _, key = error.name.partition("[")[0].partition(".")
+            stated = self.tables.get(table)
+            if not isinstance(stated, dict):  # of several of a name nobody says which
+                raise
+            unit = " in SI units" if _WITH_UNIT.match(str(stated.get(key))) else ""
+            raise error.called(self.place([table, key]) + unit) from error
 
     def _line(self, keys: Sequence[str]) -> int | None:
         """The line that states a key: the last one with its name before which there is none."""

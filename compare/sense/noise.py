@@ -26,7 +26,8 @@ def scales(reference: Readings) -> dict[str, float]:
             f"contact of the reference ({reference.source})",
             "none",
             "at some stations, with a load in the clamp",
-            "sweep the reference past the object, or check its columns",
+            "a case needs a start and stop of its [sweep] or [whisk] on either side of the object, "
+            "a file the right columns",
         )
     by_moment = moment / reference.beam.length
     force = force if force > _ROUNDING * by_moment else by_moment

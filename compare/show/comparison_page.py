@@ -120,8 +120,8 @@ def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})
     yield Table(
-        "Candidate less reference, relative to the largest magnitude in the reference; A: tip "
-        "contact, B: tangential contact",
+        "Candidate less reference, relative to the largest magnitude at a station of the "
+        "reference; A: tip contact, B: tangential contact",
         [*rows[0]],
         [[*row.values()] for row in rows],
         blamed=[i for i, name in enumerate(found.disagreement) if name in exceeded],

@@ -2,7 +2,8 @@
 
 from typing import Literal, TypeAlias
 
-from analytic import Beam
+from analytic import Beam, Readings
+from analytic.space import SpatialReadings
 
 Kind: TypeAlias = Literal["length", "force", "moment"]
 
@@ -35,6 +36,14 @@ def sentence(text: str) -> str:
     """A clause as a sentence, without the marks of code that a terminal and Markdown have."""
     text = text.replace("`", "")
     return text and f"{text[0].upper()}{text[1:].rstrip('.')}."
+
+
+def object_of(readings: Readings | SpatialReadings) -> str:
+    """What a sweep's object is, if its source recorded that; its numbers are in the case's unit."""
+    name = "profile" if isinstance(readings, Readings) else "body"
+    if not (said := readings.provenance.get(name)):
+        return "Object not recorded"
+    return f"{said}, lengths in {'m' if readings.beam.si else 'units of the case'}"
 
 
 def quantity(value: float, kind: Kind, beam: Beam) -> str:

@@ -25,7 +25,7 @@ from compare.show.document import (
 from compare.show.figures import readings as drawn
 from compare.show.figures.budget_bars import convergence_picture
 from compare.show.figures.geometry import geometry
-from compare.show.numbers import percent, place, quantity, sentence, short, words
+from compare.show.numbers import object_of, percent, place, quantity, sentence, short, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
 from compare.show.validity import validation_claim, validation_lines, validation_tables
 from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
@@ -34,13 +34,12 @@ from compare.show.verdict import absent_transitions, scope, verdict, why, worst_
 def plane_document(
     comparison: Comparison, budget: Budget | None = None, film: Film | None = None
 ) -> Document:
-    contour = comparison.reference.provenance.get("profile") or "Contour not recorded"
     found = plane_verdict(comparison, budget)
     remarks = [*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
     validation = "Validation: the disagreement against its uncertainty"
     return common.document(
         comparison,
-        f"{contour}; the figures rest on {comparison.stations} stations.",
+        f"{object_of(comparison.reference)}; the figures rest on {comparison.stations} stations.",
         replace(found, remarks=remarks),
         plane_tiles(comparison, budget),
         budget,
@@ -120,9 +119,9 @@ def _apart(comparison: Comparison) -> Iterator[Block]:
         "reading",
         {shows.format(name): partial(drawn.reading_panel, comparison, name) for name in SYMBOLS},
         "Clamp force and moment, and the contact's arc length reconstructed from them, over the "
-        f"{over}. Line: {comparison.reference.source}. Dots: "
-        f"{comparison.candidate.source}. Shaded: the reference's phases. Below: candidate less "
-        "reference, in the same unit.",
+        f"{over}. Line: {comparison.reference.source}, drawn on beyond its last station to the "
+        f"snap-off. Dots: {comparison.candidate.source}. Shaded: the reference's phases. Below: "
+        "candidate less reference, in the same unit.",
         "panels",
     )
     yield from common.apart_table(comparison)

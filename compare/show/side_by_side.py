@@ -19,7 +19,7 @@ from compare.show import style
 from compare.show.document import Block, Document, Items, Picture, Table, Text, Verdict, sections
 from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.html import html
-from compare.show.numbers import short
+from compare.show.numbers import object_of, short
 from compare.show.page import as_json, png
 
 _EDGE = 0.97  # of the picture's width
@@ -130,11 +130,10 @@ def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Pat
 
 def side_by_side_document(found: SideBySide) -> Document:
     reference = found.reference
-    object_ = reference.provenance.get("profile") or "Contour not recorded"
     return Document(
         f"{found.case} side by side: {', '.join(one.name for one in found.outcomes)}",
-        f"{object_}; {len(reference.table)} stations. Differences are root mean squares over the "
-        "stations in contact, relative to each reading's largest magnitude.",
+        f"{object_of(reference)}; {len(reference.table)} stations. Differences are root mean "
+        "squares over the stations in contact, relative to each reading's largest magnitude.",
         Verdict(
             found.agree,
             f"{'All' if found.agree else 'Not all'} agree with {_named(reference)}.",

@@ -19,7 +19,7 @@ from compare.show.document import (
     tiles_line,
 )
 from compare.show.figures import space as drawn
-from compare.show.numbers import percent, short, words
+from compare.show.numbers import object_of, percent, short, words
 from compare.show.scene import SweepScene
 
 
@@ -29,12 +29,11 @@ def spatial_document(
     budget: Parted | None = None,
     film: Film | None = None,
 ) -> Document:
-    body = comparison.reference.provenance.get("body", "Body not recorded")
     touching, stations = comparison.compared.sum(), len(comparison.compared)
     return common.document(
         comparison,
-        f"{body}; {touching} of {stations} stations compared: those at which both touch. "
-        f"Components are in the {comparison.frame}'s frame.",
+        f"{object_of(comparison.reference)}; {touching} of {stations} stations compared: those at "
+        f"which both touch. Components are in the {comparison.frame}'s frame.",
         spatial_verdict(comparison),
         spatial_tiles(comparison, budget),
         budget,

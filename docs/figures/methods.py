@@ -167,7 +167,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
     methods, columns = (list(dict.fromkeys(found[name])) for name in ("method", over))
     phases = [name for name, of in found.groupby("phase", sort=False) if of["contacts"].any()]
     figure = Figure(
-        figsize=(1.0 * len(columns) * len(phases) + 3.6, 0.36 * len(methods) + 2.2),
+        figsize=(1.0 * len(columns) * len(phases) + 3.6, 0.42 * len(methods) + 2.2),
         layout="constrained",
     )
     axes = figure.subplots(1, max(len(phases), 1), squeeze=False, sharey=True)[0]
@@ -190,7 +190,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
             text = "none" if np.isnan(size) else short(10**size) if size > -6 else "<1e-6"
             text += "" if share > _NEARLY_ALL or np.isnan(size) else f"\n{share:.0%}"
             ax.text(
-                j, i, text, ha="center", va="center", fontsize=style.SMALL - 2.5, linespacing=0.9,
+                j, i, text, ha="center", va="center", fontsize=style.SMALL, linespacing=0.9,
                 color=style.PAPER if size > _DARK else style.INK,
             )  # fmt: skip
         ax.set_xticks(range(len(columns)), columns, rotation=35, ha="right", fontsize=style.SMALL)
@@ -198,7 +198,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
     scale = ScalarMappable(decades, colours)
     figure.colorbar(scale, ax=axes, label="median error / $L$, powers of ten", shrink=0.8)
     axes[0].set_yticks(range(len(methods)), methods, fontsize=style.SMALL)
-    figure.supxlabel(f"{said}; below a number: share answered", fontsize=style.SMALL - 1)
+    figure.supxlabel(f"{said}; below a number: share answered", fontsize=style.SMALL)
     figure.suptitle(f"Contact found from the clamp: {title}", fontsize=12)
     return figure
 

@@ -1,4 +1,4 @@
-"""Every block of code and every command of every page is run; links lead somewhere."""
+"""All code and commands of all pages are run unless a block says why not; links lead somewhere."""
 
 import contextlib
 import doctest

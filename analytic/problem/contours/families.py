@@ -33,7 +33,7 @@ def catenary(a: float, c: float) -> Profile:
     InputError
         If a number cannot be.
     """
-    a, c = positive("profile catenary.a", a), finite("profile catenary.c", c)
+    a, c = positive("profile.a", a), finite("profile.c", c)
     return of_curve(_Catenary(a, c), _STEEPEST, f"catenary cosh({a:g} x) {c:+g}")
 
 
@@ -57,7 +57,7 @@ def parabola(a: float, c: float) -> Profile:
     InputError
         If a number cannot be.
     """
-    a, c = positive("profile parabola.a", a), finite("profile parabola.c", c)
+    a, c = positive("profile.a", a), finite("profile.c", c)
     return of_curve(_Parabola(a, c), _STEEPEST, f"parabola {a:g} x^2 {c:+g}")
 
 
@@ -81,8 +81,8 @@ def circle(radius: float, lowest: tuple[float, float]) -> Profile:
     InputError
         If a number cannot be.
     """
-    radius = positive("profile circle.radius", radius)
-    point = pair("profile circle.lowest", lowest)
+    radius = positive("profile.radius", radius)
+    point = pair("profile.lowest", lowest)
     return _ellipse(radius, radius, *point, f"circle of radius {radius:g}")
 
 
@@ -106,10 +106,10 @@ def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Prof
     InputError
         If a number cannot be.
     """
-    across, upward = pair("profile ellipse.semi_axes", semi_axes)
-    positive("profile ellipse.semi_axes[0]", across)
-    positive("profile ellipse.semi_axes[1]", upward)
-    point = pair("profile ellipse.lowest", lowest)
+    across, upward = pair("profile.semi_axes", semi_axes)
+    positive("profile.semi_axes[0]", across)
+    positive("profile.semi_axes[1]", upward)
+    point = pair("profile.lowest", lowest)
     return _ellipse(across, upward, *point, f"ellipse {across:g} by {upward:g}")
 
 
@@ -137,9 +137,9 @@ def two_circles(
     InputError
         If a number cannot be.
     """
-    right = positive("profile two_circles.right_radius", right_radius)
-    left = positive("profile two_circles.left_radius", left_radius)
-    x, y = pair("profile two_circles.lowest", lowest)
+    right = positive("profile.right_radius", right_radius)
+    left = positive("profile.left_radius", left_radius)
+    x, y = pair("profile.lowest", lowest)
     label = f"two circles of radius {left:g} and {right:g}"
     return of_curve(_TwoCircles(right, left, x, y), _UPRIGHT, label, kinks=(0.0,))
 

@@ -50,6 +50,7 @@ def write_animation(
     near = _view(figure.add_subplot(grid[1, 0]), one, other, follows=True)
     plots: Any = grid[1, 1].subgridspec(3, 1, hspace=0.12).subplots(sharex=True)
     curves = [_curve(ax, one, other, name) for ax, name in zip(plots, CLAMP_READINGS, strict=True)]
+    figure.align_ylabels(plots)
     plots[-1].set_xlabel(ALONG[reference.running].axis)
     return write_film(figure, [strip, far, near, *curves], chosen, touching, folder, advance)
 
@@ -171,7 +172,7 @@ def _curve(ax: Axes, one: _Motion, other: _Motion, name: str) -> Part:
     ax.set_xlim(*_padded([x, other.along], 0.03))
     ax.set_ylim(*_padded([values, other.clamp[name]], 0.08))
     ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
-    ax.set_ylabel(axis_label(name))
+    ax.set_ylabel(axis_label(name).replace(" / ", "\n"))  # two lines: the axes are low
     shade_phases(ax, x, one.phase)
 
     def show(station: int) -> None:

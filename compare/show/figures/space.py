@@ -144,8 +144,9 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
         ylabel="$z$ / $L$",
         zlabel="$y$ / $L$",
     )
-    ax.locator_params(nbins=5)
     extent = high - low
+    for axis, size in zip("xzy", extent / extent.max(), strict=True):
+        ax.locator_params(axis=axis, nbins=max(2, round(5 * size)))
     ax.set_box_aspect((extent[0], extent[2], extent[1]), zoom=1.45)
     ax.view_init(**_VIEW)
 

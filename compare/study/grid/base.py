@@ -45,7 +45,6 @@ class Base:
         except InputError as error:
             named, _, _ = str(error).partition(" = ")
             table, _, key = named.partition("[")[0].partition(".")
-            table = table.partition(" ")[0]  # "body sphere.radius"
             default = ["body" if "body" in self._tables else "profile"]
             keys = [table, key] if key and table in self._tables else default
             where = file.place(_KEYS.get(named, keys))

@@ -34,6 +34,8 @@ TABLED = UNITED.replace('"2e-6 N m^2"', '[["0 mm", "2 N mm^2"], ["50 mm", "1e-6 
     ("extra", "said"),
     [
         ("[beam]\nlength = true\n", "line 6: beam.length = True"),
+        ("[beam]\nradius = 0.5\n", "line 6: beam.radius = 0.5: must be"),
+        ("[sweep]\nstart = -2.5\n", "line 6: sweep.start = -2.5: must be"),
         ('[sweep]\nstations = "200"\n', "line 6: sweep.stations = '200'"),
         ("[mujoco]\nsegments = 2.5\n", "line 6: mujoco.segments = 2.5"),
         ("[mujoco]\nsegments = true\n", "line 6: mujoco.segments = True"),
@@ -130,6 +132,7 @@ def test_what_is_not_in_the_paper_has_keys(load):
         (UNITED, '"2e-6 N m^2"', '"2 N"', "as '2 N mm^2'"),
         (UNITED, '[0, "20 mm"]', '"20 mm"', "profile.lowest = '20 mm': must be a list"),
         (UNITED, '[0, "20 mm"]', '["20 mm"]', "line 7: profile.lowest.1 = missing"),
+        (UNITED, '"40 mm"', '"-4 cm"', "line 6: profile.radius in SI units = -0.04: must be"),
         (UNITED, '"circle"', '"cirle"', "did you mean circle?"),
         (REAL, "0.2", "-0.2", "line 8: contact.friction = -0.2: must be greater than or equal to"),
         (REAL, "0.2", "nan", "line 8: contact.friction = nan"),

@@ -83,7 +83,7 @@ def test_measured_readings_without_budget_or_provenance():
     bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
     page = Page(written_page(compare(bare, bare)))
     assert page.faults == []
-    assert "Contour not recorded" in page.text
+    assert "Object not recorded" in page.text
     assert not {"budget", "convergence"} & set(page.ids)
     assert not page.all("img", "svg")
 

@@ -99,8 +99,8 @@ def sphere(radius: float, centre: Vector) -> Ellipsoid:
     InputError
         If a number cannot be.
     """
-    size = positive("body sphere.radius", radius)
-    middle = vector("body sphere.centre", centre)
+    size = positive("body.radius", radius)
+    middle = vector("body.centre", centre)
     return Ellipsoid(np.full(3, size), middle, np.eye(3), f"sphere of radius {size:g}")
 
 
@@ -126,13 +126,13 @@ def ellipsoid(semi_axes: Vector, centre: Vector, frame: ArrayLike | None = None)
     InputError
         If a number cannot be, the frame is none, or one semi-axis is more than 1e4 of another.
     """
-    sizes = vector("body ellipsoid.semi_axes", semi_axes)
+    sizes = vector("body.semi_axes", semi_axes)
     for i, size in enumerate(sizes):
-        positive(f"body ellipsoid.semi_axes[{i}]", float(size))
+        positive(f"body.semi_axes[{i}]", float(size))
     if sizes.max() > 1e4 * sizes.min():
         allowed = "within 1e4 of each other"
-        raise InputError("body ellipsoid.semi_axes", semi_axes, allowed, "it is a disc else")
+        raise InputError("body.semi_axes", semi_axes, allowed, "it is a disc else")
     name = " by ".join(f"{size:g}" for size in sizes)
-    rows = np.eye(3) if frame is None else axes("body ellipsoid.frame", frame)
-    middle = vector("body ellipsoid.centre", centre)
+    rows = np.eye(3) if frame is None else axes("body.frame", frame)
+    middle = vector("body.centre", centre)
     return Ellipsoid(sizes, middle, rows, f"ellipsoid {name}")

@@ -245,9 +245,9 @@ def convex_mesh(
     InputError
         If the file cannot be read, its mesh is flat or, unless `hull`, open or dented.
     """
-    unit = positive("body mesh.scale", scale)
-    place = vector("body mesh.offset", offset)
-    tolerance = within("body mesh.tolerance", tolerance, 0.0)
+    unit = positive("body.scale", scale)
+    place = vector("body.offset", offset)
+    tolerance = within("body.tolerance", tolerance, 0.0)
     body = read_body(file, hull, tolerance / unit)
     label = Path(file).name
     if body.miss > 0:
@@ -282,7 +282,7 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
     except (QhullError, ValueError) as error:
         what = f"not usable ({error!s:.80})"
         allowed, remedy = "four points or more with a volume", "an array of shape (n, 3)"
-        raise InputError("body polyhedron.points", what, allowed, remedy) from error
+        raise InputError("body.points", what, allowed, remedy) from error
     return solid(found.vertices, found.faces, found.normals, label)
 
 

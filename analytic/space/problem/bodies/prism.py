@@ -155,9 +155,9 @@ def cylinder(radius: float, through: Vector, axis: Vector) -> Cylinder:
     InputError
         If a number cannot be.
     """
-    size = positive("body cylinder.radius", radius)
-    place = vector("body cylinder.through", through)
-    along = direction("body cylinder.axis", axis)
+    size = positive("body.radius", radius)
+    place = vector("body.through", through)
+    along = direction("body.axis", axis)
     return Cylinder(size, place, along, f"cylinder of radius {size:g}")
 
 
@@ -185,13 +185,13 @@ def prism(
     InputError
         If a number cannot be.
     """
-    require("body prism.contour", contour, Contour, "as catenary(0.5, -0.8)")
-    along = direction("body prism.axis", axis)
+    require("body.contour", contour, Contour, "as catenary(0.5, -0.8)")
+    along = direction("body.axis", axis)
     if along[2] < 0:  # the prism is endless: its axis has no sense
         along = -along
     from scipy.spatial.transform import Rotation  # slow to load, and few cases need it
 
     half = along + np.eye(3)[2]  # two right angles about half-way take z to the axis,
     to = Rotation.from_quat([*half, 0.0]) * Rotation.from_quat([0.0, 0.0, 1.0, 0.0])
-    place = vector("body prism.origin", origin)
+    place = vector("body.origin", origin)
     return Prism(contour, place, to.as_matrix().T, f"prism, {contour.label}")
