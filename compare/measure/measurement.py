@@ -176,7 +176,9 @@ def measure(
     events = {name: at(one[name], other[name]) for name in TRANSITIONS}
     twice = second_contacts(reference), second_contacts(candidate)
     if twice[0] and twice[1]:
-        seconds = {name: at(place, twice[1][name]) for name, place in twice[0].items()}
+        seconds = {
+            name: at(twice[0][name], twice[1][name]) for name in twice[0] if name in twice[1]
+        }
         events |= {
             name: one for name, one in seconds.items() if not one.reference is one.candidate is None
         }

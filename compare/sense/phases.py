@@ -84,6 +84,8 @@ def classify(readings: Readings) -> Classification:
 def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
     """Stations counted by judged phase and by true phase."""
     known = (judged.phase != "") & truth.trusted
+    if "second_contact_x" in truth.table:  # two contacts show neither phase
+        known &= truth.table["second_contact_x"].isna().to_numpy()
     true = np.array([says(truth.table["phase"], phase) for phase in PHASES])
     seen = np.array([judged.phase == phase for phase in PHASES])
     rows, columns = (

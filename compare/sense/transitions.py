@@ -78,19 +78,19 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]] | None:
     """Where along the sweep a second contact begins and ends, and how far that may be off.
 
-    The source's own values where it located them; else half-way between stations. None if it does
-    not look for one, and for an end that is the snap-off.
+    The source's own values where it locates events, as far as it could; else half-way between
+    stations. None if it does not look for one, and for an end that is the snap-off.
     """
-    recorded = readings.provenance.get("events", {})
-    found = {name: (recorded.get(name), 0.0) for name in SECOND}
-    if "second_contact_x" not in readings.table:
-        return found if {*SECOND} & {*recorded} else None
+    if "events" in readings.provenance or "second_contact_x" not in readings.table:
+        recorded = readings.provenance.get("events", {})
+        return {name: (recorded[name], 0.0) for name in SECOND if name in recorded} or None
+    found: dict[str, tuple[float | None, float]] = dict.fromkeys(SECOND, (None, 0.0))
     at = readings.running_values
     touching = np.flatnonzero(np.isfinite(readings.values("contact_x")))
     second = np.isfinite(readings.values("second_contact_x"))[touching]
     for name, change in zip(SECOND, (1, -1), strict=True):
         changes = np.flatnonzero(np.diff(second.astype(int)) == change)
-        if changes.size and name not in recorded:
+        if changes.size:
             one, other = at[touching[changes[0 if change > 0 else -1] + np.arange(2)]]
             found[name] = float(one + other) / 2, float(abs(one - other)) / 2
     return found

@@ -16,22 +16,27 @@ from analytic.solver.general.stations import solve_places
 
 _LOOKS = (129, 33, 33)  # places of a path, and of the step between them, that are looked at
 _AHEAD = 1e-3  # of the curve: there a state that has left a contact has it well behind
-_MOST = 24  # paths; round a polygon of many corners there may be more
+_MOST = 24  # paths, and corners; each costs a tenth of a second
 
 
 def with_second_contacts(objects: Sequence[Contour], path: Path, poses: Poses) -> list[Path]:
-    """A path of one contact up to its second one, and what follows as far as it is known."""
+    """A path of one contact up to its second one, and what follows as far as it is known.
+
+    Round very many corners it is left as it is: it would be two contacts all along.
+    """
     found: list[Path] = []
-    while True:
+    alone, corners = path, sum(one.breaks().size // 2 for one in objects)
+    while max(len(found), corners) <= _MOST:
         pair = _touched(objects, path, poses)
         if pair is None:
             return [*found, path]
-        curve, start, alone = pair
-        found += [_up_to(path, poses, alone), follow_from(curve, start)]
+        curve, start, before = pair
+        found += [_up_to(path, poses, before), follow_from(curve, start)]
         after = _left_alone(objects, found[-1], poses)
-        if after is None or len(found) > _MOST:
+        if after is None:
             return [*found[:-1], found[-1]._replace(complete=False)]
         path = after
+    return [alone]
 
 
 def joined(paths: Sequence[Path]) -> Path:
@@ -108,14 +113,18 @@ def _begun(
     vibrissa, contour = path.vibrissa, path.contour
     assert isinstance(contour, Contour)
     state = states_at(contour, z[None, :-1], vibrissa)
-    which, s, t = deepest(objects, state)
+    which, s, near = deepest(objects, state)
     t_one, force, excess, p = z
     length = float(state.arc_length[0])
     if s < length:
-        guess = np.array([t_one, force, excess, t, 0.0, length - s, p])
         curve = _curve(Pair(contour, objects[which]), vibrissa, poses)
-        start = curve.touched(guess, 4)
-        return start and (curve, start, start.z[[0, 1, 2, 6]])
+        for t in near:
+            guess = np.array([t_one, force, excess, t, 0.0, length - s, p])
+            start = curve.touched(guess, 4)
+            if start is not None:
+                return curve, start, start.z[[0, 1, 2, 6]]
+        return None
+    t = near[0]
     # The free end is not loaded: it has the same slope, relative to the contact, as at rest.
     slope = state.tip_angle[0] + float(vibrissa.natural_curvature) * (s - length)
     turned = slope - float(objects[which].at(np.array([t])).alpha[0])

@@ -56,8 +56,12 @@ def _are_outside(contour: Contour, contact: States, doubtful: Booleans) -> Boole
     return outside
 
 
-def deepest(objects: Sequence[Contour], contact: States) -> tuple[int, float, float]:
-    """Which object a state is deepest in, at which arc length, and the contour parameter there."""
+def deepest(objects: Sequence[Contour], contact: States) -> tuple[int, float, tuple[float, ...]]:
+    """Which object a state is deepest in, at which arc length, and contour parameters there.
+
+    That of what is nearest, and that of the vibrissa's slope: next to a corner, which it turns
+    about, a facet is as near.
+    """
     parts = zip(_loaded(contact, _FINE), _free(contact, _FINE), strict=True)
     s, x, y = (np.concatenate(part)[:, 0] for part in parts)
     taper = contact.vibrissa.unloaded.taper(s)
@@ -65,7 +69,10 @@ def deepest(objects: Sequence[Contour], contact: States) -> tuple[int, float, fl
     which = int(np.argmin([(gap - taper).min() for gap, _ in found]))
     gap, t = found[which]
     at = int(np.argmin(gap - taper))
-    return which, float(s[at]), float(t[at])
+    ends = [max(at - 1, 0), min(at + 1, len(s) - 1)]
+    slope = np.arctan2(*(np.diff(values[ends]) * np.diff(s[ends]) for values in (y, x)))
+    alike = objects[which].parameter(np.clip(slope, -np.pi / 2, np.pi / 2))
+    return which, float(s[at]), (float(t[at]), float(alike[0]))
 
 
 def _starts_outside(contact: States) -> Booleans:

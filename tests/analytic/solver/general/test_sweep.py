@@ -221,7 +221,10 @@ def test_an_object_that_is_widest_where_the_tip_is(friction):
 
 @pytest.mark.parametrize("corners", [16, pytest.param(64, marks=pytest.mark.slow)])
 def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
-    """Curved towards a polygon the vibrissa touches two corners on half of its way: 3e-4 L deep."""
+    """Curved towards a polygon the vibrissa touches two corners on half of its way: 3e-4 L deep.
+
+    Of few corners these are two contacts, of very many the states are refused.
+    """
     angle = np.linspace(-np.pi / 2, np.pi / 2, corners)
     vertices = np.column_stack([0.6 * np.sin(angle), 1 - 0.6 * np.cos(angle)])
     beam = Beam(radius=0.0, natural_curvature=0.5)
@@ -229,13 +232,17 @@ def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
     table = found.table
     tangent = ((table["phase"] == "tangent") & (table["status"] == "ok")).to_numpy()
     assert tangent.sum() > 40
-    assert (table["status"] == "touches again").sum() > 20
+    twice = table.get("second_contact_x", table["contact_x"] * np.nan).notna()
+    assert (twice if corners == 16 else table["status"] == "touches again").sum() > 20
     x, y = deflected_shapes(found)
     place, fine = np.linspace(0, 1, x.shape[1]), np.linspace(0, 1, 3000)
     begin, way = vertices[:-1], np.diff(vertices, axis=0)
     normal = np.column_stack([way[:, 1], -way[:, 0]]) / np.linalg.norm(way, axis=1)[:, None]
     for i in np.flatnonzero(tangent):
-        points = CubicSpline(place, np.column_stack([x[i], y[i]]))(fine)
+        points = np.column_stack(
+            [x[i], y[i]]
+        )  # two contacts are too close to each other for a spline
+        points = points if twice[i] else CubicSpline(place, points)(fine)
         outside = ((points[:, None] - begin) * normal).sum(axis=2).max(axis=1)
         assert outside.min() > -1e-6
 

@@ -16,6 +16,7 @@ from analytic import (
     InputError,
     Readings,
     Sweep,
+    Whisk,
     catenary,
     certify,
     circle,
@@ -140,6 +141,20 @@ def test_other_values_against_integration(natural, width, height, radius, fricti
     assert set(table["status"]) <= {"ok", "sticks", "touches again"}
     here = table["status"].isin(["ok", "sticks"])
     assert table.loc[here, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
+
+
+def test_a_corner_behind_a_tip_on_the_same_facet_is_touched_as_well() -> None:
+    """As MuJoCo does: the corner is found by the vibrissa's slope, not by the facet beside it."""
+    points = [(0.1412, 0.709), (0.2264, 0.7434), (0.3323, 0.8273)]
+    way = Whisk(-0.18, -1.26, 1.02, stations=80)
+    case = Case(Beam(radius=2e-3, natural_curvature=0.42), polygon(points), way, clamp_stiffness=13)
+    table = solve_sweep(case, certified=True).table
+    assert (table["status"] == "ok").all()
+    on = table[table["second_contact_x"].notna()]
+    assert len(on) > 4
+    np.testing.assert_allclose(on["contact_x"], 0.2264, atol=1e-12)
+    assert (on["second_contact_arc_length"] == 1).all()
+    assert table[["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
 
 
 @pytest.mark.slow
