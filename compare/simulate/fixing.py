@@ -50,8 +50,12 @@ class Fixed:
         yield f"wrote {names}: {len(self.edits)} edits"
         for edit in filter(str, self.followed):
             yield f"  then set {edit}"
-        for fault in self.inspection.faults:
-            yield f"  left, {fault.subject}: {fault.text}"
+        left = self.inspection.faults
+        if left:
+            faults = f"{len(left)} faults are" if len(left) > 1 else "1 fault is"
+            yield f"  {faults} left, with which no error is expected; by hand:"
+        for fault in left:
+            yield f"  {'; '.join(filter(None, (f'{fault.subject}: {fault.text}', fault.remedy)))}"
         if self.inspection.sound:
             until = "" if stop_of(self.inspection.found) is None else _UNTIL
             found = expected(self.inspection.found, SPEED)
