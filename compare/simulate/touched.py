@@ -15,6 +15,7 @@ from compare.simulate.remark import (
     Remark,
 )
 from compare.simulate.rigidity import as_intended, contact_stiffness, moving
+from mujoco_models.inspect.ahead import HEIGHT
 from mujoco_models.inspect.measured import Geom, MeasuredBeam
 
 _ASIDE = 0.01  # L; of a geom's axis
@@ -58,8 +59,9 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
                      "there")  # fmt: skip
     others = tuple(geom for geom in found.ahead if geom not in found.in_the_way)
     if others:
-        yield Remark("fault", "contact", f"an object meets {len(others)} geoms beside it, too: "
-                     "they are on its foot, or on what its sensors feel",
+        some = f"{len(others)} geom{'s' if len(others) > 1 else ''}"
+        yield Remark("fault", "contact", f"an object {HEIGHT:g} L ahead meets {some} beside it, on "
+                     "its foot or on what its sensors feel",
                      edits=(treatment.unseen(*others),))  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:

@@ -13,7 +13,7 @@ from mujoco_models.inspect.touching import thickness
 WAY = 2.25
 """L; of the foot: past the circle of `case_of` 2.15, and while it gains speed."""
 _BEGINS = 0.02  # L; what is nearer to the foot's own line, a floor perhaps, is left alone
-_OBJECT = 0.4, 1.5  # L; how high an object is, and half of how deep: as the circle of `case_of`
+HEIGHT, _DEEP = 0.4, 1.5  # L; how high an object is, and half of how deep: the circle of `case_of`
 
 
 def on_its_way(
@@ -32,10 +32,10 @@ def ahead(
 ) -> tuple[int, ...]:
     """Geoms beside it that an object meets, too: on its foot, or on what its sensors feel."""
     (low, high), length = _extent(nodes, axes), _length(nodes)
-    height, deep = (x * length for x in _OBJECT)
     box = (
-        low + np.array([-WAY * length, height, -deep]), high + np.array([WAY * length, 0, deep])
-    )  # fmt: skip
+        low + length * np.array([-WAY, HEIGHT, -_DEEP]),
+        high + length * np.array([WAY, 0, _DEEP]),
+    )
     owner = model.geom_bodyid
     felt = _below(model, parts.foot if parts.force is None else _body_of(model, parts.force))
     felt &= model.body_weldid != model.body_weldid[parts.foot]

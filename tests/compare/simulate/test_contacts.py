@@ -85,7 +85,7 @@ def test_what_an_object_meets_beside_it_is_named(tmp_path, beside, named):
     found = changed(tmp_path, OnRail(inside_foot=OnRail.inside_foot + beside))
     said = [str(fault) for fault in found.faults]
     assert len(said) == bool(named)
-    assert all(f"an object meets {named} geoms beside it, too" in one for one in said)
+    assert all(f"0.4 L ahead meets {named} geom" in one for one in said)
     assert fix(tmp_path / "whisker.xml", {}, found, tmp_path / "fixed.xml").inspection.sound
 
 
