@@ -40,8 +40,8 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
         shown = ", ".join(map(repr, found.objects[:4]))
         yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
     elif found.drive is None:
-        yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "make it a mocap body, "
-                     "or give it a slide joint across the vibrissa",
+        yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "give it a slide joint "
+                     "across the vibrissa",
                      on_rail(found) if found.hand is None else ())  # fmt: skip
     elif "which is a force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "

@@ -124,6 +124,12 @@ def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     assert any("nothing can move" in fault for fault in found)
 
 
+def test_the_weight_on_a_sensor_is_in_units_of_the_joints_ei(tmp_path):
+    """(0.313 + 0.001) EI/L^2; of what the tip of a soft clamp shows it was 0.34."""
+    soft = changed(tmp_path, OnRail(first="start", gravity="1 0 0")).faults
+    assert any("puts 0.31 EI/L^2 on the force sensor" in str(fault) for fault in soft)
+
+
 def test_disabled_contacts_are_named(tmp_path):
     found = changed(tmp_path, OnRail(), ("</mujoco>", NO_CONTACTS))
     assert {fault.subject for fault in found.faults} >= {"flags"}
