@@ -30,7 +30,7 @@ def export(
         float, option("Largest rms of a reading, relative to its largest magnitude.", "RMS")
     ] = 0.01,
     speed: Annotated[
-        float | None, option("Of the foot [L/T1].", "V", "the case's, or 0.05")
+        float | None, option("Of the foot [L/T1].", "V", "[motion]'s, or 0.05 without one")
     ] = None,
     beam: Annotated[
         BeamKind | None, option("MuJoCo's beam.", default="the case's, or chain")

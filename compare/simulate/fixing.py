@@ -23,6 +23,7 @@ from compare.simulate.rigidity import (
 from mujoco_models import inspect_model
 from mujoco_models.fix.edit import Edit, Insert
 from mujoco_models.fix.write import fixed
+from mujoco_models.inspect.ahead import HEIGHT
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import MeasuredBeam
 
@@ -30,7 +31,7 @@ CASE_MARK = "# Written by `vibrissa inspect --write`: the vibrissa"
 """The first line of a case file that is not a user's own."""
 _ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step
 _UNTIL = ", until it would leave its plane"
-_CIRCLE, _LOWEST = 0.8, 0.4  # L; radius of the circle, and how high it is
+_CIRCLE = 0.8  # L; its radius
 _STATIONS = 21  # of a varying EI
 _WAY = 1.5  # L; of the foot while the side of the vibrissa touches that circle
 
@@ -50,8 +51,12 @@ class Fixed:
         yield f"wrote {names}: {len(self.edits)} edits"
         for edit in filter(str, self.followed):
             yield f"  then set {edit}"
-        for fault in self.inspection.faults:
-            yield f"  left, {fault.subject}: {fault.text}"
+        left = self.inspection.faults
+        if left:
+            faults = f"{len(left)} faults are" if len(left) > 1 else "1 fault is"
+            yield f"  {faults} left, with which no error is expected; by hand:"
+        for fault in left:
+            yield f"  {'; '.join(filter(None, (f'{fault.subject}: {fault.text}', fault.remedy)))}"
         if self.inspection.sound:
             until = "" if stop_of(self.inspection.found) is None else _UNTIL
             found = expected(self.inspection.found, SPEED)
@@ -104,7 +109,7 @@ def stop_of(found: MeasuredBeam) -> float | None:
             radius=radii(found)[0],
             natural_curvature=found.natural_curvature if is_curved(found) else 0.0,
         ),
-        circle(_CIRCLE * length, (0.0, _LOWEST * length)),
+        circle(_CIRCLE * length, (0.0, HEIGHT * length)),
         clamp_stiffness=clamp_stiffness(found) * rigidity / length,
     )
     exact = solve_sweep(case)
@@ -139,7 +144,7 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
     if friction:
         lines += ["[contact]", f"friction = {friction:g}"]
     lines += ["[profile]", 'kind = "circle"', f"radius = {_CIRCLE * length:.6g}",
-              f"lowest = [0.0, {_LOWEST * length:.6g}]", "[sweep]", "stations = 60",
+              f"lowest = [0.0, {HEIGHT * length:.6g}]", "[sweep]", "stations = 60",
               *([] if stop is None else [f"stop = {stop:.6g}  # then it would leave its plane"]),
               "[model]", f'file = "{file.name}"']  # fmt: skip
     lines += [f'{name} = "{value}"' for name, value in names.items() if value is not None]

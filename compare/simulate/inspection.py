@@ -73,7 +73,11 @@ class Inspection:
                 f"by {error:.1e} L with {times * order.links:.0f}"
                 for times, error in ((2, order.error_of_twice), (4, order.error_of_fourfold))
             )
-            yield "order in its links", f"{order.order:.1f}: {own}; links laid out alike: {finer}"
+            alone = "" if 0.9 < order.order < 2.1 else f", as its ends suit {order.links:.0f} alone"
+            yield (
+                "order in its links",
+                f"{order.order:.1f}{alone}: {own}; links laid out alike: {finer}",
+            )
         stiffness = clamp_stiffness(found)
         yield (
             "clamp",

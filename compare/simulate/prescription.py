@@ -65,6 +65,11 @@ def prescribe(
             "friction", motion.friction or case.friction, "0 where a model is chosen by its error",
             "leave it out, and set condim and friction of the written geoms",
         )  # fmt: skip
+    if error <= REFERENCE_OFF:
+        raise InputError(
+            "--error", error, f"above {REFERENCE_OFF:g}, which the reference may be off itself",
+            "ask for a larger error",
+        )  # fmt: skip
     least, over_error, most = _POINTS
     settings = Settings(beam=beam, contour_points=int(min(max(over_error / error, least), most)))
     case = leftward(case)
@@ -85,7 +90,7 @@ def prescribe(
             break
     raise InputError(
         "--error", error, f"at least {_least(min(found)):.1e} at {motion.speed:g} L/T1",
-        "ask for less, or a lower --speed; cables also slip off sideways, chains and rods do not",
+        "ask for a larger error, or a lower --speed; cables also slip off sideways",
     )  # fmt: skip
 
 

@@ -118,7 +118,7 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
                      "degrees, less than a sweep bends it",
                      edits=(*treatment.joints(found, limited="false"),))  # fmt: skip
-    stretch = found.stretch * FORCE * found.tip_rigidity / found.length**2
+    stretch = found.stretch * FORCE * as_intended(found) / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
         hard = Edit(
@@ -217,11 +217,11 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
         yield Remark("note", "medium", f"a density of {density:g}, a viscosity of {viscosity:g} "
                      f"and a wind of {wind:g} act on vibrissa and foot, not in theory")  # fmt: skip
     strength = float(np.linalg.norm(found.gravity))
-    sag, weight = found.sag / found.length, found.weight * found.length**2 / found.tip_rigidity
+    sag, weight = found.sag / found.length, found.weight * found.length**2 / as_intended(found)
     said = []
     if sag > _SAG:
         said.append(f"bends the vibrissa by {sag:.1e} L at the tip")
-    if weight > RIGIDITY * FORCE:
+    if weight > RIGIDITY * FORCE and not (found.force is None or _silent(found.force)):
         said.append(f"puts {weight:.2g} EI/L^2 on the force sensor before anything touches")
     if said:
         yield Remark("fault", "gravity", f"{strength:.3g} {' and '.join(said)}",
@@ -259,15 +259,19 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
                 "free body that is welded to the one with the sensors"
             )  # fmt: skip
             continue
-        if np.abs(sensor.axes).max() < _READS:
-            yield Remark(
-                "fault", f"{word} sensor", f"{sensor.name!r} reads nothing: MuJoCo leaves the weld "
-                "that holds its free body out of what it feels",
-                "make that body the mocap body itself, without joint and weld"
+        if _silent(sensor):
+            cause, remedy = (
+                ("MuJoCo leaves the weld that holds its free body out of what it feels",
+                 "put its site on the first link, or hold that body by a slide with a velocity "
+                 "actuator instead of joint and weld")
+                if sensor.free else
+                ("it is not between foot and vibrissa", "put its site there")
             )  # fmt: skip
+            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} reads nothing of a load on "
+                         f"the tip: {cause}", remedy)  # fmt: skip
             continue
         yield from _axes(word, sensor)
-        most = FORCE * found.tip_rigidity / found.length ** (2 if word == "force" else 1)
+        most = FORCE * as_intended(found) / found.length ** (2 if word == "force" else 1)
         if sensor.cutoff < 2 * most:
             yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
                          f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}",
@@ -285,6 +289,10 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
                          "begins" + ("; its moments are counted from there"
                                      if word == "torque" else ""),
                          edits=treatment.at_clamp(sensor, found.length))  # fmt: skip
+
+
+def _silent(sensor: Sensed) -> bool:
+    return bool(np.abs(sensor.axes).max() < _READS)
 
 
 def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:

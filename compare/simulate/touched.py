@@ -14,7 +14,8 @@ from compare.simulate.remark import (
     SINKS_RUBBING,
     Remark,
 )
-from compare.simulate.rigidity import contact_stiffness, moving
+from compare.simulate.rigidity import as_intended, contact_stiffness, moving
+from mujoco_models.inspect.ahead import HEIGHT
 from mujoco_models.inspect.measured import Geom, MeasuredBeam
 
 _ASIDE = 0.01  # L; of a geom's axis
@@ -51,11 +52,22 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "contact", f"bent, it touches {count} geoms that move with its foot, "
                      "another vibrissa's perhaps, and not the object alone",
                      edits=treatment.apart(found) if found.springs != "flex" else ())  # fmt: skip
+    if found.on_its_way:
+        shown = ", ".join(map(repr, found.on_its_way[:4]))
+        yield Remark("fault", "contact", f"where its foot goes, it meets {shown}, and not the "
+                     "object alone", 'sweep a copy without, or with contype="0" conaffinity="0" '
+                     "there")  # fmt: skip
+    others = tuple(geom for geom in found.ahead if geom not in found.in_the_way)
+    if others:
+        some = f"{len(others)} geom{'s' if len(others) > 1 else ''}"
+        yield Remark("fault", "contact", f"an object {HEIGHT:g} L ahead meets {some} beside it, on "
+                     "its foot or on what its sensors feel",
+                     edits=(treatment.unseen(*others),))  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return
     softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
-    sinks, said = FORCE * found.tip_rigidity / found.length**3 / softest.stiffness, list[str]()
+    sinks, said = FORCE * as_intended(found) / found.length**3 / softest.stiffness, list[str]()
     if sinks > (SINKS_RUBBING if softest.friction else SINKS):
         depth = f"{sinks:.1e} L into the object"
         if sinks * found.length > 2 * softest.radius:
@@ -70,11 +82,12 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
                     f"{' or diverges' if explicit else ''}")  # fmt: skip
     elif hard > _HARDEST_OF_ALL and FORCE / sinks > _SOFT:
         said.append(f"{hard:.2g} EI/L^3 is so hard that it chatters, at any time step")
-    thickest = max(meeting, key=lambda geom: geom.margin)
-    if abs(thickest.margin) > RADIUS * found.length:
-        yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
-                     "anything touches, as if the vibrissa were so much thicker",
-                     edits=treatment.contacts(found, margin="0", gap="0"))  # fmt: skip
+    off = max((geom.margin for geom in meeting), key=abs)
+    if abs(off) > RADIUS * found.length:
+        when, like = ("before", "thicker") if off > 0 else ("after", "thinner")
+        yield Remark("fault", "contact", f"a margin of {off:.3g} pushes {when} anything touches, "
+                     f"as if the vibrissa were so much {like}",
+                     edits=treatment.contacts(found, margin="0"))  # fmt: skip
     rubs, decay = (max(getattr(g, x) for g in meeting) for x in ("friction", "decay"))
     steps = treatment.steps(found) if said else ()
     # One that is damped more swings as little as a critical one with its damper, and is as hard.
@@ -102,7 +115,7 @@ def _course(found: MeasuredBeam) -> Iterator[Remark]:
     if far.aside > _ASIDE * found.length:
         yield Remark("fault", "contact", f"{far.name!r} stands out from the vibrissa by "
                      f"{far.aside / found.length:.2g} L, and what touches it is no contact of that",
-                     edits=treatment.unseen(far))  # fmt: skip
+                     edits=(treatment.unseen(far.number),))  # fmt: skip
     for geom in sorted(found.geoms, key=lambda geom: geom.start):
         if geom.start - reached - 2 * geom.radius > _HOLE * found.length:
             holes.append(f"{reached / found.length:.2f} to {geom.start / found.length:.2f} L")

@@ -89,9 +89,9 @@ def contacts(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
     return (Edit(kind, tuple(attributes.items()), tuple(numbers)),)
 
 
-def unseen(geom: Geom) -> tuple[Edit, ...]:
-    """One that nothing is to touch."""
-    return (Edit("geom", (("contype", "0"), ("conaffinity", "0")), (geom.number,)),)
+def unseen(*geoms: int) -> Edit:
+    """What nothing is to touch."""
+    return Edit("geom", (("contype", "0"), ("conaffinity", "0")), geoms)
 
 
 def apart(found: MeasuredBeam) -> tuple[Edit, ...]:

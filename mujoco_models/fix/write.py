@@ -141,6 +141,7 @@ class Texts:
         self._put_into(element, new.text)
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)
+            self._free_keys(int(self._places.model.body_mocapid[new.body]))
 
     def _widen_keys(self, body: int) -> None:
         """Give keyframes a place and a speed of a joint that comes first in a body."""
@@ -154,6 +155,15 @@ class Texts:
             for key in (key for key in keys if name in key.attributes):
                 numbers = key.attributes[name].split()
                 self._give(key, name, " ".join([*numbers[:at], "0", *numbers[at:]]))
+
+    def _free_keys(self, mocap: int) -> None:
+        """Take from keyframes where a mocap body was that a joint moves now."""
+        keys = [e for e in self._places.root.below() if e.tag == "key" and mocap >= 0]
+        for name, count in (("mpos", 3), ("mquat", 4)):
+            for key in (key for key in keys if name in key.attributes):
+                numbers = key.attributes[name].split()
+                del numbers[count * mocap : count * (mocap + 1)]
+                self._give(key, name, " ".join(numbers))
 
     def _put_into(self, element: Element, text: str) -> None:
         end = self._end_of_tag(element)

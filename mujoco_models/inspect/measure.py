@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Literal, TypeAlias, cast
+from typing import Literal, cast
 
 import mujoco
 import numpy as np
@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
+from mujoco_models.inspect.ahead import ahead, on_its_way
 from mujoco_models.inspect.beside import check_constraints, check_tendons, limit_stiffness
 from mujoco_models.inspect.drive import (
     drive_of,
@@ -26,11 +27,13 @@ from mujoco_models.inspect.held import lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
-from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed, nearest_axes
+from mujoco_models.inspect.measured import Joint, MeasuredBeam
 from mujoco_models.inspect.parts import Names, Parts, find, masses_of
 from mujoco_models.inspect.probe import probe_of
+from mujoco_models.inspect.sensors import Held, readings_of
 from mujoco_models.inspect.touching import (
     beside_it,
+    name_of_geom,
     of_its_hand,
     self_contacts,
     thickness,
@@ -57,9 +60,6 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
     model = load(path, names.site)
     with unlogged(), threadpool_limits(1):  # the matrices are small
         return measure(model, find(model, names), path)
-
-
-Held: TypeAlias = HeldChain | HeldRod
 
 
 def hold(model: mujoco.MjModel, parts: Parts) -> Held:
@@ -95,11 +95,12 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         )  # fmt: skip
     chain = parts.rod is None
     welded = on_weld(model, parts, -axes[0]) if chain else None
-    force, torque = _sensed(welded or held, axes, tip_rigidity, length)
+    force, torque = readings_of(welded or held, axes, tip_rigidity, length)
     probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
     loads, bent, in_the_way = _bent(held, model, axes, unit)
     sag, weight = _sag(held, axes)
     mass = float(model.body_mass[list(parts.chain)].sum())
+    drive = drive_of(model, parts.foot, -axes[0])
     return MeasuredBeam(
         model=_model_name(model),
         foot=name_of(model.body(parts.foot), "body"),
@@ -107,7 +108,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         body_mass=float(model.body_mass[parts.foot]),
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
-        drive=drive_of(model, parts.foot, -axes[0]),
+        drive=drive,
         reach=reach_of(model, parts.foot, -axes[0], _WAY * length / (_SWEEP * period)),
         switched=_switched(model, tied=welded is not None or not chain),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
@@ -139,6 +140,11 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         torsion=_torsion(held, axes[1], tip_rigidity, length),
         self_contacts=self_contacts(model, parts),
         in_the_way=tuple(sorted(in_the_way | beside_it(model, parts, held.data, axes, length))),
+        on_its_way=tuple(
+            name_of_geom(model, one)
+            for one in (on_its_way(model, parts, held.data, nodes, axes) if drive else ())
+        ),
+        ahead=ahead(model, parts, held.data, nodes, axes),
         timestep=float(model.opt.timestep),
         integrator=cast(
             IntegratorKind,
@@ -285,88 +291,10 @@ def _sag(held: Held, axes: Floats) -> tuple[float, float]:
     return sag, weight
 
 
-def _sensed(held: Held, axes: Floats, rigidity: float, length: float) -> list[Sensed | None]:
-    """The readings of both sensors of small forces and moments on the tip, one after the other."""
-    sensors = held.parts.force, held.parts.torque
-    if sensors == (None, None):
-        return [None, None]
-    zeros = [np.zeros(3) if sensor is None else held.sensed(sensor) for sensor in sensors]
-    by_force, by_moment = np.zeros((2, 2, 3, 3))
-    force, moment = held.small * rigidity / length**2, held.small * rigidity / length
-    for i, axis in enumerate(axes):
-        for found, size, kind in ((by_force, force, 0), (by_moment, moment, 1)):
-            loads = [np.zeros(3), np.zeros(3)]
-            loads[kind] = size * axis
-            held.load(*loads)
-            held.rest()
-            for turned, sensor, zero in zip(found, sensors, zeros, strict=True):
-                if sensor is not None:
-                    turned[:, i] = -(held.sensed(sensor) - zero) / size
-    arm = axes @ (held.tip - held.clamp)
-    held.unload()
-    return [
-        None if sensor is None else _seen(held, sensor, axes, arm, by_force[i], by_moment[i])
-        for i, sensor in enumerate(sensors)
-    ]
-
-
-def _seen(
-    held: Held,
-    sensor: int,
-    axes: Floats,
-    arm: Floats,
-    by_force: Floats,
-    by_moment: Floats,
-) -> Sensed:
-    """What a sensor is by its readings of forces and of moments, in columns; at rest."""
-    is_force = held.model.sensor_type[sensor] == mujoco.mjtSensor.mjSENS_FORCE
-    turned = by_force if is_force else by_moment
-    # Of the moment of a force on the tip about the sensor: M = r x F gives r, by columns of skew.
-    skew = np.zeros((3, 3)) if is_force else np.linalg.pinv(turned) @ by_force
-    seen = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-    place, _ = held.site(sensor)
-    name = name_of(held.model.sensor(sensor), "sensor")
-    offset = axes @ (place - held.clamp)
-    lever = offset if is_force else arm - seen
-    cutoff = held.cutoffs[sensor] or np.inf
-    site = int(held.model.sensor_objid[sensor])
-    body = int(held.model.site_bodyid[site])
-    on_body = held.axes_of(body)
-    upright = on_body.T @ axes.T @ nearest_axes(turned).T
-    quaternion = np.empty(4)
-    mujoco.mju_mat2Quat(quaternion, upright.ravel())
-    clamp = on_body.T @ (held.clamp - held.data.xpos[body])
-    return Sensed(
-        name,
-        sensor,
-        site,
-        body,
-        clamp,
-        quaternion,
-        on_body.T @ axes[1],
-        turned,
-        offset,
-        lever,
-        _feels_contacts(held, sensor),
-        cutoff,
-        float(held.late[sensor]),
-    )
-
-
 def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:
     if parts.rod is not None:
         return "flex"
     return "plugin" if parts.plugin else "joints"
-
-
-def _feels_contacts(held: Held, sensor: int) -> bool:
-    """MuJoCo does not count those of a flex among the forces on the bodies of its vertices."""
-    model = held.model
-    body = int(model.site_bodyid[model.sensor_objid[sensor]])
-    tree = held.parts.chain[0]
-    while tree > 0 and tree != body:
-        tree = int(model.body_parentid[tree])
-    return held.parts.rod is None or tree != body
 
 
 def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:

@@ -39,6 +39,7 @@ class Sensed:
     # False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
     feels_contacts: bool
     cutoff: float  # the largest reading that it gives; infinite if it has no such limit
+    free: bool  # whether it is on a free body: MuJoCo leaves what a weld does to that out
     late: float = 0.0  # by its own delay, and the time from one reading to the next
 
 
@@ -83,7 +84,7 @@ class Geom:
     decay: float  # of how fast it meets an object, by its contact's damper [1/time]
     damping_ratio: float  # of its contacts
     friction: float  # coefficient; 0 if its contacts have no friction
-    margin: float  # how far from an object its contacts already push, less their gap [length]
+    margin: float  # how far from an object its contacts push; negative: how deep [length]
 
     @property
     def middle(self) -> float:
@@ -169,6 +170,10 @@ class MeasuredBeam(Shown):
         Pairs of geoms, one of them the vibrissa's, that touch in the first state.
     in_the_way : tuple of int
         Geoms that move with the foot and touch the vibrissa once that or they are bent.
+    on_its_way : tuple of str
+        Geoms that do not move with the foot and that it meets as the foot goes.
+    ahead : tuple of int
+        Geoms on the foot, or on what the sensors feel, that an object meets beside it.
     timestep : float
     integrator : str
     cone : str
@@ -219,6 +224,8 @@ class MeasuredBeam(Shown):
     torsion: float
     self_contacts: tuple[str, ...]
     in_the_way: tuple[int, ...]
+    on_its_way: tuple[str, ...]
+    ahead: tuple[int, ...]
     timestep: float
     integrator: IntegratorKind
     cone: ConeKind

@@ -114,7 +114,7 @@ def _geom(
         decay=decay,
         damping_ratio=ratio,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
-        margin=float(stated("margin") - stated("gap")),
+        margin=float(stated("margin")),
     )
 
 

@@ -46,7 +46,7 @@ def _immovable(model: mujoco.MjModel, foot: int, left: Floats) -> InputError:
     return InputError(
         "foot", name,
         "one that can be moved across the vibrissa, in the plane of its hinges",
-        "make it a mocap body, or give it a slide joint along "
+        "give it a slide joint along "
         f"{np.array2string(np.abs(left), precision=3)}",
     )  # fmt: skip
 

@@ -12,8 +12,9 @@ from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import spec_of
-from mujoco_models.inspect.measure import Held, sweep_axes
+from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.inspect.sensors import Held
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stiffness import IMPEDANCE

@@ -18,7 +18,7 @@ from compare.simulate.treatment import timestep
 from mujoco_models import inspect_model, shipped_models, simulate_model
 from mujoco_models.fix.edit import Edit
 from tests.compare.simulate.faults import faults_in
-from tests.mujoco_models.inspect.chains import Chain
+from tests.mujoco_models.inspect.chains import Chain, OnRail
 
 WELDED = (
     '<body name="hand" mocap="true"/>',
@@ -59,11 +59,31 @@ def test_a_soft_weld_is_no_clamp_and_its_free_body_feels_nothing(tmp_path, flag)
     before, after = fixed(path)
     assert faults_in(before) >= {"clamp", "force sensor", "torque sensor"}
     assert ("flags" in faults_in(before)) is bool(flag)
-    assert "reads nothing" in str(before.remarks)
+    (said,) = (fault for fault in before.faults if fault.subject == "force sensor")
+    assert "leaves the weld" in said.text
+    assert "site on the first link" in said.remedy
     assert faults_in(after.inspection) == {"force sensor", "torque sensor"}
+    assert any("2 faults are left, with which no error is" in line for line in after.lines())
+    assert sum("put its site on the first link" in line for line in after.lines()) == 2
     weld = after.inspection.found.hand
     assert weld.rotation < 1e-3
     assert weld.displacement < 1e-3
+
+
+def test_a_welded_foot_has_a_speed_and_feels_by_a_site_on_the_first_link(tmp_path):
+    """Swept so it was sound, and one station of 60 chattered; with a mocap foot 12 do."""
+    path = Chain(foot="", inside_foot="<freejoint/>" + WEIGHT, gravity="100 0 0").write(tmp_path)
+    text = path.read_text().replace("<worldbody>", "<worldbody>" + WELDED[0])
+    text = text.replace("</mujoco>", WELDED[1])
+    path.write_text(text)
+    (said,) = (r.text for r in Inspection(inspect_model(path)).faults if r.subject == "gravity")
+    assert "force sensor" not in said  # which reads nothing
+    first = '<body name="whisker1" pos="0 0.025 0">'
+    site = '<site name="clamp" />'
+    path.write_text(text.replace(site, "").replace(first, f"{first}{site}"))
+    before, after = fixed(path)
+    assert "foot" not in {remark.subject for remark in before.remarks}
+    assert after.inspection.sound
 
 
 @pytest.mark.parametrize(("stiffness", "sound"), [("0", False), ("2e3", True)])
@@ -142,7 +162,7 @@ def test_a_sensor_goes_to_where_the_vibrissa_begins(tmp_path):
 
 def test_what_can_leave_its_plane_is_swept_until_it_would(tmp_path):
     """Farther on chains of balls slip off sideways, in most turns of the world: 20 % rms."""
-    path = Chain().write(tmp_path)
+    path = OnRail().write(tmp_path)
     assert "stop" not in case_of(inspect_model(path), path, {})
     path.write_text(path.read_text().replace('axis="0 0 1"', 'type="ball"'))
     before, after = fixed(path)
@@ -207,6 +227,14 @@ def test_a_heavy_foot_on_a_soft_servo_is_in_the_readings(tmp_path, stiffness, sa
     heavy = (WEIGHT, WEIGHT.replace('mass="1e-3"', 'mass="1"'))
     drive = f'<actuator><position joint="rail" kp="{stiffness}"/></actuator></mujoco>'
     path = on_rail(tmp_path, heavy, (MOTOR, drive), (' armature="1e5"', ""))
+    assert faults_in(Inspection(inspect_model(path))) == said
+
+
+@pytest.mark.parametrize(("gain", "said"), [("80", {"foot"}), ("160", set())])
+def test_a_servo_that_leaps_as_contact_ends_is_soft(tmp_path, gain, said):
+    """3 EI/L^2 over the gain: one that stood back by 0.044 L let go 0.04 L late."""
+    drive = f'<actuator><position joint="rail" kp="{gain}"/></actuator></mujoco>'
+    path = on_rail(tmp_path, (MOTOR, drive), (' armature="1e5"', ""))
     assert faults_in(Inspection(inspect_model(path))) == said
 
 
@@ -307,6 +335,17 @@ def test_the_soft_end_of_a_cone_lags_more(tmp_path):
     parts = [expected(cone, speed).parts for speed in (SPEED, 2 * SPEED)]
     assert parts[0]["damping"] == pytest.approx(0.2 * cone.damping_ratio * 5 * SPEED, rel=0.01)
     assert parts[1]["speed"] == pytest.approx(2**1.5 * parts[0]["speed"])
+
+
+def test_a_mocap_foot_gets_a_slide(tmp_path):
+    """Past an object 12 of 60 stations chattered, and its case ended with 1."""
+    key = '<keyframe><key mpos="0 0 0" mquat="1 0 0 0"/></keyframe></mujoco>'
+    path = Chain(links=4).write(tmp_path)
+    path.write_text(path.read_text().replace("</mujoco>", key))
+    before, after = fixed(path)
+    assert faults_in(before) >= {"foot"}
+    assert "foot" not in faults_in(after.inspection)
+    assert after.inspection.found.drive == "slide 'vibrissa-rail' with actuator 'vibrissa-motor'"
 
 
 @pytest.mark.slow

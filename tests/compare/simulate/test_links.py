@@ -9,7 +9,7 @@ from compare.simulate.inspection import Inspection
 from compare.simulate.links import order_in_links, tips_of_chain
 from compare.simulate.rigidity import tip_of
 from mujoco_models import inspect_model, shipped_models
-from tests.mujoco_models.inspect.chains import Chain
+from tests.mujoco_models.inspect.chains import Chain, OnRail
 
 
 def order(tmp_path, **kinds):
@@ -42,6 +42,14 @@ def test_the_order_is_printed_with_the_two_that_it_is_of(tmp_path):
     order, own, twice, fourfold = (float(x) for x in re.findall(r"[\d.]+e-\d+|\d\.\d", line))
     assert own > twice > fourfold
     assert np.log2(twice / fourfold) == pytest.approx(order, abs=0.06)
+
+
+def test_an_order_that_its_ends_suit_alone_is_no_order(tmp_path):
+    """A first joint that makes the tip right with 20 links is a little off with more."""
+    found = Inspection(inspect_model(OnRail(first="start", stiffer={1: 2.0508}).write(tmp_path)))
+    assert found.sound
+    (line,) = (line for line in found.lines() if "order in its links" in line)
+    assert ", as its ends suit 20 alone:" in line
 
 
 def test_fine_chains_tend_to_the_exact_cantilever():

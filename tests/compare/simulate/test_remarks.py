@@ -14,7 +14,7 @@ from compare.simulate.rigidity import clamp_stiffness, counted_twice, radii
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
 from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
-from tests.mujoco_models.inspect.chains import Chain
+from tests.mujoco_models.inspect.chains import Chain, OnRail
 from tests.mujoco_models.inspect.rods import Rod
 
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
@@ -34,13 +34,15 @@ def of_rods(*values):
 @pytest.mark.parametrize(
     ("sound", "stated"),
     [
-        (Chain(), STATED),
-        (Chain(links=10), STATED),
-        pytest.param(Chain(links=60), STATED, marks=pytest.mark.slow),
+        (OnRail(), STATED),
+        (OnRail(links=10), STATED),
+        pytest.param(OnRail(links=60), STATED, marks=pytest.mark.slow),
         (Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'), STATED),
-        (Chain(site='euler="0 0 1.5707963267948966"'), STATED),
+        (OnRail(site='euler="0 0 1.5707963267948966"'), STATED),
+        (OnRail(tip='gap="0.02"'), STATED),  # where MuJoCo looks for contacts, and nothing pushes
+        (OnRail(beside='<geom type="plane" size="1 1 1" pos="0 0 -0.05"/>'), STATED),
         # A straight taper.
-        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}, solref="0.06 1"), None),
+        (OnRail(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}, solref="0.06 1"), None),
         pytest.param(Rod(edges=12), WIRE, marks=rods),
         of_rods(Rod(), WIRE),
         of_rods(Rod(10, dof=""), WIRE),
@@ -71,6 +73,8 @@ MISTAKES = [
     ({"sensors": '<torque name="T" site="clamp"/>'}, "force sensor: none"),
     ({"length": 1000.0, "radius": 5.0}, "units: the length is 1000, 1000 times"),
     ({"tip": 'margin="0.02"'}, "contact: a margin of 0.02 pushes before anything touches"),
+    ({"tip": 'margin="0.02" gap="0.02"'}, "contact: a margin of 0.02 pushes before"),
+    ({"tip": 'margin="-0.02"'}, "contact: a margin of -0.02 pushes after"),
     ({"sensors": FORCE.format('cutoff="1"')}, "force sensor: 'F' is cut off at 1"),
 ]
 ROD_MISTAKES = [
@@ -95,7 +99,9 @@ ROD_MISTAKES = [
     ("model", "said"),
     [
         *(
-            pytest.param(Chain(links=n, **mistake), said, marks=[] if n == 12 else pytest.mark.slow)
+            pytest.param(
+                OnRail(links=n, **mistake), said, marks=[] if n == 12 else pytest.mark.slow
+            )
             for n in (12, 20, 40)
             for mistake, said in MISTAKES
         ),
@@ -118,8 +124,14 @@ def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     assert any("nothing can move" in fault for fault in found)
 
 
+def test_the_weight_on_a_sensor_is_in_units_of_the_joints_ei(tmp_path):
+    """(0.313 + 0.001) EI/L^2; of what the tip of a soft clamp shows it was 0.34."""
+    soft = changed(tmp_path, OnRail(first="start", gravity="1 0 0")).faults
+    assert any("puts 0.31 EI/L^2 on the force sensor" in str(fault) for fault in soft)
+
+
 def test_disabled_contacts_are_named(tmp_path):
-    found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
+    found = changed(tmp_path, OnRail(), ("</mujoco>", NO_CONTACTS))
     assert {fault.subject for fault in found.faults} >= {"flags"}
     assert not any("21 of 21 geoms" in str(fault) for fault in found.faults)
 
@@ -128,7 +140,7 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path):
     """Balls without contacts beside capsules that have some: neither its tip nor a fault."""
     seen = '<geom type="sphere" size="0.002" pos="0 0.01 0" contype="0" conaffinity="0"/>'
     found = changed(
-        tmp_path, Chain(), ('<geom name="whisker-geom', f'{seen}<geom name="whisker-geom')
+        tmp_path, OnRail(), ('<geom name="whisker-geom', f'{seen}<geom name="whisker-geom')
     )
     assert found.sound
 
@@ -148,19 +160,19 @@ UNSEEN = 'contype="0" conaffinity="0" '
 )
 def test_what_touches_is_along_all_of_it(tmp_path, change, said):
     """A link whose capsule is only seen, beside a ball that collides, is a hole."""
-    found = changed(tmp_path, Chain(), change)
+    found = changed(tmp_path, OnRail(), change)
     assert [said in str(fault) for fault in found.faults] == ([True] if said else [])
     assert found.found.length == pytest.approx(1.0)
 
 
 def test_what_stands_out_is_not_to_be_touched(tmp_path):
     arm = (TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}')
-    before = changed(tmp_path, Chain(), arm)
+    before = changed(tmp_path, OnRail(), arm)
     assert fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection.sound
 
 
 def test_a_medium_is_noted(tmp_path):
-    found = changed(tmp_path, Chain(), ('integrator="', 'density="1000" integrator="'))
+    found = changed(tmp_path, OnRail(), ('integrator="', 'density="1000" integrator="'))
     assert [remark.subject for remark in found.remarks].count("medium") == 1
 
 
@@ -168,21 +180,21 @@ def test_a_medium_is_noted(tmp_path):
 @pytest.mark.parametrize("stiffness", ["20 0 1e4", "20 8"])
 def test_springs_that_stiffen_are_no_lack_of_links(tmp_path, stiffness):
     """Of the second one readings were 4 % off."""
-    found = changed(tmp_path, Chain(), ('stiffness="20.0"', f'stiffness="{stiffness}"'))
+    found = changed(tmp_path, OnRail(), ('stiffness="20.0"', f'stiffness="{stiffness}"'))
     assert any("its springs stiffen" in str(fault) for fault in found.faults)
 
 
 def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
-    curved = Chain(curvature=0.3)
+    curved = OnRail(curvature=0.3)
     assert faults(tmp_path, curved, Beam(natural_curvature=0.3)) == []
     assert faults(tmp_path, curved, Beam(natural_curvature=-0.3)) != []
-    chords = Chain(curvature=0.3, first="end")  # its first and its last piece are straight
+    chords = OnRail(curvature=0.3, first="end")  # its first and its last piece are straight
     found = Inspection(inspect_model(chords.write(tmp_path)), Beam(natural_curvature=0.3))
     assert "natural curvature" not in faults_in(found)
 
 
 def test_links_that_are_too_hard_to_turn_are_named(tmp_path):
-    path = Chain().write(tmp_path)
+    path = OnRail().write(tmp_path)
     hard = '<inertial pos="0 0.02 0" mass="0.0157" diaginertia="0.1 0.1 0.1"/><joint axis'
     path.write_text(path.read_text().replace("<joint axis", hard))
     (said,) = (r.text for r in Inspection(inspect_model(path)).faults if r.subject == "inertia")
@@ -192,11 +204,11 @@ def test_links_that_are_too_hard_to_turn_are_named(tmp_path):
 @pytest.mark.parametrize(
     ("chain", "stiffness"),
     [
-        (Chain(), np.inf),
-        (Chain(first="start", length=2.0), 40.0),  # whatever the length
-        (Chain(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
-        (Chain(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
-        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),
+        (OnRail(), np.inf),
+        (OnRail(first="start", length=2.0), 40.0),  # whatever the length
+        (OnRail(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
+        (OnRail(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
+        (OnRail(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),
     ],
 )
 def test_the_clamps_compliance_is_measured(tmp_path, chain, stiffness):
@@ -228,7 +240,7 @@ def test_what_is_wrong_is_one_line(tmp_path, words):
 
 
 def test_the_shipped_models_have_the_faults_that_they_say():
-    """And no others: the tapered whisker and the sound chain have none."""
+    """And no others."""
     found = {
         name: faults_in(Inspection(inspect_model(path)))
         for name, path in shipped_models().items()
@@ -236,7 +248,7 @@ def test_the_shipped_models_have_the_faults_that_they_say():
     }
     assert found == {
         "sound-chain": set(),
-        "tapered-whisker": {"contact", "time step"},
+        "tapered-whisker": {"contact", "foot", "time step"},
         "tutorial-chain": {"clamp", "contact"},
         "mistakes": {
             "clamp",
@@ -284,7 +296,7 @@ def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
 def test_a_contact_that_is_too_soft_and_too_hard_has_one_prescription(tmp_path):
     """Explicit steps of T1/10 take no contact that holds: what is said of both sets one solref."""
     steps = ('timestep="0.01" integrator="discrete"', 'timestep="0.1" integrator="Euler"')
-    before = changed(tmp_path, Chain(), steps, ('solref="0.02 1"', 'solref="0.5 1"'))
+    before = changed(tmp_path, OnRail(), steps, ('solref="0.02 1"', 'solref="0.5 1"'))
     said = [fault for fault in before.faults if fault.subject == "contact"]
     assert len(said) == 1
     assert "EI/L^2 sinks" in said[0].text
@@ -302,7 +314,7 @@ def test_a_contact_that_is_too_soft_and_too_hard_has_one_prescription(tmp_path):
 @pytest.mark.parametrize(("links", "steps", "chatters"), [(20, 2000, True), (12, 9000, False)])
 def test_explicit_steps_take_contacts_by_the_square_of_the_links(tmp_path, links, steps, chatters):
     """0.1/N^2 EI/L^3 times the step squared: 1e4 EI/L^3 take steps of T1/6600 with 20."""
-    found = inspect_model(Chain(links=links).write(tmp_path))
+    found = inspect_model(OnRail(links=links).write(tmp_path))
     stepped = replace(found, integrator="euler", timestep=found.period / steps)
     said = " ".join(map(str, Inspection(stepped).faults))
     assert ("too hard for euler" in said) is chatters
@@ -310,7 +322,7 @@ def test_explicit_steps_take_contacts_by_the_square_of_the_links(tmp_path, links
 
 def test_no_dampers_are_noted(tmp_path):
     """Swept at 0.05 L/T1 readings are moved by less than 1e-4: no fault."""
-    assert "damping" not in {r.subject for r in changed(tmp_path, Chain()).remarks}
+    assert "damping" not in {r.subject for r in changed(tmp_path, OnRail()).remarks}
     path = tmp_path / "whisker.xml"
     path.write_text(re.sub(' damping="[^"]*"', "", path.read_text()))
     (said,) = (r for r in Inspection(inspect_model(path)).remarks if r.subject == "damping")
@@ -323,7 +335,7 @@ CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
 
 @pytest.mark.parametrize(("tapered", "noted"), [(True, False), (False, True)])
 def test_a_taper_of_ei_without_one_of_radius_is_noted(tmp_path, tapered, noted):
-    path = Chain(stiffer=CONE).write(tmp_path)
+    path = OnRail(stiffer=CONE).write(tmp_path)
     text = path.read_text()
     for i in range(21) if tapered else ():
         middle = 0.0125 if i == 0 else min(0.05 * i, 0.9875)
@@ -340,7 +352,7 @@ def test_a_taper_of_ei_without_one_of_radius_is_noted(tmp_path, tapered, noted):
 
 def test_round_ends_that_are_in_two_capsules_are_counted(tmp_path):
     """Of 20 capsules of 0.05 and a radius of 0.005: of each 4 r/3 over the length and that."""
-    found = Inspection(inspect_model(Chain(links=20).write(tmp_path)))
+    found = Inspection(inspect_model(OnRail(links=20).write(tmp_path)))
     assert counted_twice(found.found) == pytest.approx(20 * 4 / 3 * 5e-3 / (1 + 21 * 4 / 3 * 5e-3))
     path = tmp_path / "whisker.xml"
     path.write_text(path.read_text().replace('type="capsule"', 'type="cylinder"'))
@@ -362,5 +374,15 @@ LOSS = 'frictionloss="0.1" solreffriction="-1 {}"'
 )
 def test_limits_and_friction_matter_as_far_as_they_hold(tmp_path, given, subject, named):
     """MuJoCo's are soft: by how much, their solref says, in the model's own unit of time."""
-    found = changed(tmp_path, Chain(), ("<joint ", f"<joint {given} "))
+    found = changed(tmp_path, OnRail(), ("<joint ", f"<joint {given} "))
     assert (subject in {fault.subject for fault in found.faults}) is named
+
+
+def test_a_sensor_that_reads_nothing_is_not_where_the_load_goes(tmp_path):
+    """Not by a weld, which it has none of."""
+    aside = OnRail(beside='<body name="other"><site name="there"/></body>')
+    path = aside.write(tmp_path)
+    path.write_text(path.read_text().replace('site="clamp"', 'site="there"'))
+    said = [str(one) for one in Inspection(inspect_model(path, force="F", torque="T")).faults]
+    assert len(said) == 2
+    assert all("is not between foot and vibrissa; put its site there" in one for one in said)

@@ -57,3 +57,14 @@ class Chain:
             f"<sensor>{self.sensors}</sensor></mujoco>"
         )
         return path
+
+
+@dataclass(frozen=True)
+class OnRail(Chain):
+    """The same on a slide that nothing drives; a mocap body has no speed, which is a fault."""
+
+    foot: str = ""
+    inside_foot: str = (
+        '<joint name="rail" type="slide" axis="1 0 0" armature="10"/>'
+        '<inertial pos="0 0 0" mass="1e-3" diaginertia="1e-5 1e-5 1e-5"/>'
+    )

@@ -69,7 +69,7 @@ def plain(tmp_path_factory):
 
 @pytest.mark.slow
 def test_a_mocap_foot_has_no_speed_and_chatters(tmp_path):
-    """Observed: 14 of 60 stations, against 5 on a slide; `inspect` says so in a note."""
+    """Observed: 14 of 60 stations, against 5 on a slide; `inspect` says so."""
     sound = shipped_models()["sound-chain"]
     text, mocap = sound.read_text(), tmp_path / "mocap.xml"
     rail = '<body name="foot">\n      <joint name="rail" type="slide" axis="1 0 0" armature="10"/>'
