@@ -26,6 +26,7 @@ _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
+_SURELY = 0.95  # probability of a memory longer than a pass; white noise never has it of 25 sweeps
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
@@ -44,17 +45,13 @@ class NoiseFound:
     # Shape (channels,); stations after which the correlated part has fallen to 1/e; 0 if none.
     memory: Floats
     hum: float  # stations in a period of it; 0 where there is none
-    stations: int  # of the longest pass
-
-    @property
-    def lasts(self) -> Booleans:
-        """Which remembers longer than a pass, as what is wrong with a case does."""
-        return (self.correlation > _REMEMBERED) & (self.memory > self.stations)
+    lasts: Booleans  # shape (channels,); remembers longer than a pass, as what is no noise does
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
         """What a user should know of it, a line each."""
-        for name, correlation, memory in zip(names, self.correlation, self.memory, strict=True):
-            if self.stations >= memory > 0 and correlation > _REMEMBERED:
+        known = np.where(self.lasts | (self.correlation <= _REMEMBERED), 0.0, self.memory)
+        for name, memory in zip(names, known, strict=True):
+            if memory:
                 said = f"the noise of {name} remembers: over some {memory:.0f} stations"
                 yield f"{said}; the intervals know it"
         if any(self.lasts):
@@ -310,4 +307,6 @@ def _described(likely: Floats, hum: float, block: int, stations: int) -> NoiseFo
     correlation = np.array((rho * size / (1 + size)) @ likely)
     memory = np.array([-1 / np.log(r) if r else 0.0 for r in rho])
     remembered = np.array(memory @ likely)
-    return NoiseFound(correlation, np.where(likely[0] > 0.5, 0.0, remembered), hum, stations)
+    long = memory >= min(stations, memory.max())  # the longest stands for all that are longer
+    lasts = likely[long].sum(axis=0) > _SURELY
+    return NoiseFound(correlation, np.where(likely[0] > 0.5, 0.0, remembered), hum, lasts)

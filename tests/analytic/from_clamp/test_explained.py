@@ -79,8 +79,7 @@ def test_what_remembers_longer_than_a_pass_may_be_no_noise(count):
     found = calibrate(seen, replace(case, profile=circle(0.2575, (0.05, 0.8))))
     assert not found.misfit_shows
     assert not found.explains
-    (said,) = found.noise.said(CLAMP_READINGS)
-    assert "longer than a pass" in said
+    assert any("longer than a pass" in said for said in found.noise.said(CLAMP_READINGS))
 
 
 @pytest.mark.parametrize("period", [2.4, 7.3])
