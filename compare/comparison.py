@@ -272,7 +272,7 @@ def compare(
     ------
     InputError
         If the sweeps are of different beams or have no common stretch, the reference never touches
-        or its rows are out of order, the offset is ambiguous, or the noise is no fraction of the
+        or its rows are out of order, or the noise is no fraction of the
         largest magnitude; in space, if they are of two clamps or not at the same stations. If one
         is in the plane and the other in space, or what is given is for the other kind.
     """

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp, softmax
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 
 _MEMORY = np.array([0.5, 0.75, 0.87, 0.93, 0.965, 0.983, 0.992, 0.9965, 0.9995])
 _SIZES = np.array([0.1, 0.3, 1, 3, 10, 30, 1e2, 1e3, 1e4, 1e5])  # variance over that of the white
@@ -26,6 +26,7 @@ _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
+_SURELY = 0.95  # probability of a memory longer than a pass; white noise never has it of 25 sweeps
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
@@ -44,14 +45,23 @@ class NoiseFound:
     # Shape (channels,); stations after which the correlated part has fallen to 1/e; 0 if none.
     memory: Floats
     hum: float  # stations in a period of it; 0 where there is none
+    lasts: Booleans  # shape (channels,); remembers longer than a pass, as what is no noise does
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
         """What a user should know of it, a line each."""
-        for name, correlation, memory in zip(names, self.correlation, self.memory, strict=True):
-            if memory and correlation > _REMEMBERED:
-                yield f"the noise of {name} remembers: over some {memory:.0f} stations"
+        known = np.where(self.lasts | (self.correlation <= _REMEMBERED), 0.0, self.memory)
+        for name, memory in zip(names, known, strict=True):
+            if memory:
+                said = f"the noise of {name} remembers: over some {memory:.0f} stations"
+                yield f"{said}; the intervals know it"
+        if any(self.lasts):
+            of = " and ".join(np.array(names)[self.lasts])
+            yield (
+                f"what is left of {of} remembers longer than a pass: noise may, and so does what "
+                "is not as stated, of which the intervals know nothing"
+            )
         if self.hum:
-            yield f"hum, with a period of {self.hum:.3g} stations"
+            yield f"hum, with a period of {self.hum:.3g} stations; the intervals know it"
 
 
 @dataclass(frozen=True)
@@ -64,7 +74,9 @@ class Estimated:
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
     likelihood: float  # logarithm of the readings' probability, but for a constant
     relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
-    alike: float = 1.0  # probability that passes leave so much alike at the same places by chance
+    of_hum: float  # by which hum does, which is not among that
+    # Probability that passes leave so much alike at the same places by chance; None of too few.
+    alike: float | None = None
 
 
 def estimate(
@@ -94,10 +106,14 @@ def estimate(
     start = np.linalg.lstsq(flat, readings.ravel(), rcond=None)[0]
     given = float(np.sum(readings**2))
     readings = readings - by_number @ start
-    hum = _hum(max(np.split(readings, np.cumsum(rows)[:-1]), key=len))
+    each = np.split(readings, np.cumsum(rows)[:-1])
+    hum, of_hum = _hum(max(each, key=len)), 0.0
     parts = [by_number, nuisances, readings[:, :, None]]
     if hum:
-        line = np.concatenate([_line(n, readings.shape[1], hum) for n in rows])
+        waves = [_waves(len(one), hum) for one in each]
+        pairs = zip(waves, each, strict=True)
+        of_hum = sum(np.sum((np.linalg.qr(x)[0].T @ one) ** 2) for x, one in pairs)
+        line = np.concatenate([_line(x, readings.shape[1]) for x in waves])
         parts.insert(2, line)
         uncertain = np.append(uncertain, np.full(line.shape[2], np.inf))
     block = len(readings) // _ENOUGH + 1  # stations of which one is made
@@ -134,17 +150,20 @@ def estimate(
     determinants = root[:, None] + logarithm.sum(axis=0)
     _, weights = _likely(left, determinants, len(columns))
     size = sizes[:known]
-    unfitted = float(white[..., -1, -1].sum() - _without_nuisances(white, prior, 0)[0].sum())
+    kept = np.array([*range(known + nuisances.shape[2]), -1])
+    steady = white[..., kept[:, None], kept]
+    unfitted = float(white[..., -1, -1].sum() - _without_nuisances(steady, prior[kept], 0)[0].sum())
 
     def scaled(found: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
         return start + found[0] / size, found[1] / np.outer(size, size)
 
     return Estimated(
         *scaled(together),
-        _described(likely, hum, block),
+        _described(likely, hum, block, block * max(rows)),
         tuple(scaled(one) for one in by_pass),
         float(logsumexp(weights, axis=0).sum()),
         given - float(np.sum(readings**2)) + unfitted,
+        float(of_hum),
     )
 
 
@@ -270,17 +289,24 @@ def _hum(left: Floats) -> float:
     return float(1 / cycles[top])
 
 
-def _line(n: int, channels: int, period: float) -> Floats:
-    """Sine and cosine of each channel, shape (n, channels, 2 channels)."""
+def _waves(n: int, period: float) -> Floats:
+    """Cosine and sine, shape (n, 2)."""
     turn = 2 * np.pi * np.arange(n) / period
-    waves = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    return np.asarray(np.einsum("nw,cd->ncdw", waves, np.eye(channels)).reshape(n, channels, -1))
+    return np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
 
-def _described(likely: Floats, hum: float, block: int) -> NoiseFound:
+def _line(waves: Floats, channels: int) -> Floats:
+    """Those of each channel, shape (n, channels, 2 channels)."""
+    every = np.einsum("nw,cd->ncdw", waves, np.eye(channels))
+    return np.asarray(every.reshape(len(waves), channels, -1))
+
+
+def _described(likely: Floats, hum: float, block: int, stations: int) -> NoiseFound:
     rho, size = _GRID.T
     rho, size = rho ** (1 / block), size / block  # of sums of what remembers longer than they are
     correlation = np.array((rho * size / (1 + size)) @ likely)
     memory = np.array([-1 / np.log(r) if r else 0.0 for r in rho])
     remembered = np.array(memory @ likely)
-    return NoiseFound(correlation, np.where(likely[0] > 0.5, 0.0, remembered), hum)
+    long = memory >= min(stations, memory.max())  # the longest stands for all that are longer
+    lasts = likely[long].sum(axis=0) > _SURELY
+    return NoiseFound(correlation, np.where(likely[0] > 0.5, 0.0, remembered), hum, lasts)

@@ -62,7 +62,8 @@ def likeliest(
     if family == "auto" and not explaining:
         best = ""
         if found:
-            best = f", the best leaves {min(one.misfit for one in found):.3g} times the noise"
+            least = min(one.misfit for one in found)
+            best = f", what the best leaves is no noise ({least:.3g} times its size)"
         why = f"likely {otherwise}"
         if refused:
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"

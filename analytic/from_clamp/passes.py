@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import fdtrc, gammaincc
 
+from analytic.from_clamp.correlated import NoiseFound
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
@@ -13,6 +14,7 @@ from analytic.problem.readings import Readings
 _BY_CHANCE = 0.01  # probability of so much scatter; less is no chance
 _HARDLY = 1e-3  # the same of passes that leave the same; of few the test is right to a factor of 6
 _FEWEST = 3  # passes; two do not show over how many places noise remembers
+ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
 _PLACES = 20  # along the way, at which passes are held against each other
 
 
@@ -25,7 +27,9 @@ class Consistency:
     stated: Floats  # shape (unknowns,); what the noise lets one expect of it
     chi_square: float  # squares of their distances from what all say, over their covariances
     degrees: int  # of freedom of that
-    alike: float  # probability that what they leave at the same places is alike by chance
+    # Probability that what they leave at the same places is alike by chance; None of less than
+    # three to one side.
+    alike: float | None
 
     @property
     def probability(self) -> float:
@@ -40,7 +44,7 @@ class Consistency:
     @property
     def leave_alike(self) -> bool:
         """Whether they leave the same at the same places, which is no noise."""
-        return self.alike <= _HARDLY
+        return self.alike is not None and self.alike <= _HARDLY
 
     @property
     def farthest(self) -> int:
@@ -50,7 +54,19 @@ class Consistency:
         return int(np.argmax(away.max(axis=1)))
 
 
-def consistency(by_pass: Sequence[tuple[Floats, Floats]], alike: float = 1.0) -> Consistency:
+def left_by_noise(noise: NoiseFound, passes: Consistency | None, misfit: float) -> bool:
+    """Whether what is left, `misfit` times the noise, differs between passes, or is soon forgotten.
+
+    What is wrong in all passes does neither; rounding counts as noise.
+    """
+    if passes is not None and passes.alike is not None:
+        return not passes.leave_alike
+    return misfit < ROUNDING or not noise.lasts.any()
+
+
+def consistency(
+    by_pass: Sequence[tuple[Floats, Floats]], alike: float | None = None
+) -> Consistency:
     """Hold the numbers of each pass, with their covariances, against what all passes say."""
     numbers = np.array([found for found, _ in by_pass])
     covariances = np.array([covariance for _, covariance in by_pass])
@@ -71,17 +87,17 @@ def consistency(by_pass: Sequence[tuple[Floats, Floats]], alike: float = 1.0) ->
 
 def alike_by_chance(
     left: Floats, by_number: Floats, drift: Floats, foot_x: Floats, rows: Sequence[int]
-) -> float:
+) -> float | None:
     """Probability that passes leave by chance so much alike at the same places.
 
     What is wrong in all passes to one side is left by all at the same places; noise is not, however
     long it remembers. `left`, `by_number` and `rows` are those of `correlated.estimate`, `drift` is
     what a reading's zero and its slope do; what a change of the numbers explains does not count.
-    The probability is 1 of less than three passes to one side.
+    There is none of less than three passes to one side.
     """
     each = np.split(foot_x, np.cumsum(rows)[:-1])
     to_right = np.array([x[-1] > x[0] for x in each])
-    found = [1.0]
+    found: list[float] = []
     for some in (np.flatnonzero(to_right), np.flatnonzero(~to_right)):
         if len(some) < _FEWEST:
             continue
@@ -101,7 +117,7 @@ def alike_by_chance(
         rest = means[0] - means[0] @ shapes @ shapes.T
         freedom = len(shapes) - len(shapes.T)
         found += [_by_chance(by_drift, drift.shape[2]), _by_chance(rest, freedom)]
-    return min(1.0, max(len(found) - 1, 1) * min(found))
+    return min(1.0, len(found) * min(found)) if found else None
 
 
 def _means(columns: Floats, cell: Integers, passes: int) -> Floats:

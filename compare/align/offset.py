@@ -29,6 +29,10 @@ _PLAIN, _ITERATIONS = 10, 30  # at most, of least squares and of Huber's estimat
 _ONE = 1e-6  # stations; offsets that least squares finds closer together are one
 
 
+class NoOffsetError(Exception):
+    """The readings determine none, and why."""
+
+
 @dataclass(frozen=True)
 class Offset:
     """By how much the candidate's ``foot_x`` exceeds the reference's for one foot position.
@@ -42,10 +46,13 @@ class Offset:
         the offset was given. From the residual of the fit and its correlation between stations, so
         that a model's smooth deviation widens it; what of that deviation looks exactly like an
         offset cannot be distinguished from one.
+    unknown : str
+        Why none was found, and `value` is 0; empty otherwise.
     """
 
     value: float
     uncertainty: float = 0.0
+    unknown: str = ""
 
 
 def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
@@ -110,9 +117,9 @@ def estimate_offset(
     for other in others:
         apart = abs(other.value - best.value) > _USELESS * length
         if apart and other.misfit * _DISTINCT < best.misfit:
-            raise _ambiguous(f"{best.value:.4g} and {other.value:.4g} fit alike")
+            raise NoOffsetError(f"{best.value:.4g} and {other.value:.4g} fit alike")
     if not best.uncertainty < _USELESS * length:
-        raise _ambiguous(f"{best.value:.4g} +- {best.uncertainty:.2g}, a flat minimum")
+        raise NoOffsetError(f"{best.value:.4g} +- {best.uncertainty:.2g}, a flat minimum")
     return Offset(best.value, best.uncertainty)
 
 
@@ -136,7 +143,7 @@ def offset_fits(
     loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
     for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
         if number < _FEWEST:
-            raise _ambiguous(f"{number} trusted stations of the {name} in contact")
+            raise NoOffsetError(f"{number} trusted stations of the {name} in contact")
     seen = np.stack([candidate.values(n) / size for n, size in scales(reference).items()])
     x = candidate.running_values
     near: list[float] = []
@@ -147,7 +154,7 @@ def offset_fits(
     tried = (_fit(curve, x[loaded], seen[:, loaded], value, robust=True) for value in near)
     fits = [fit for fit in tried if fit is not None]
     if not fits:
-        raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
+        raise NoOffsetError(f"fewer than {_FEWEST} stations in a phase of the reference")
     return sorted(fits, key=lambda fit: fit.misfit)
 
 
@@ -287,12 +294,3 @@ def _half_width(score: Floats, information: float) -> float:
     # Kiefer and Vogelsang 2005, table 1: 97.5 % point for Bartlett's window of width b n.
     critical = 1.9600 + 2.9694 * b + 0.4160 * b**2 - 0.5324 * b**3
     return float(critical * np.sqrt(variance) / information)
-
-
-def _ambiguous(found: str) -> InputError:
-    return InputError(
-        "offset",
-        f"ambiguous ({found})",
-        "determined by the readings",
-        "sweep more of the contact, or give the offset as a number",
-    )

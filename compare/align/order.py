@@ -43,7 +43,8 @@ class RowOrder:
             return (
                 f"{self.column} counts the other way: it grows where the reference's falls, while "
                 "force and moment follow the reference row by row; compared with "
-                f"{turned}{self.column} instead"
+                f"{turned}{self.column} instead (or force_x and moment_z have the opposite sign, "
+                "if the object is symmetric)"
             )
         if self.sorted:
             return (

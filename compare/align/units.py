@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
-from compare.align.offset import offset_fits
+from compare.align.offset import NoOffsetError, offset_fits
 from compare.sense.phases import Classification, classify
 
 # One unit of length in another: mm, cm, dm, m and inches, the larger in the smaller.
@@ -88,5 +88,5 @@ def _misfit(
     scaled = replace(candidate, table=table)
     try:
         return offset_fits(reference, scaled, reference_phase, classify(scaled))[0].misfit
-    except InputError:  # too few stations in contact
+    except NoOffsetError:  # too few stations in contact
         return np.inf

@@ -96,4 +96,7 @@ def calibrate(
             shift = f" --offset {off.value:.4g}"
         made = folder / "case.toml"
         terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
+        if found.explains:
+            of = f"vibrissa reconstruct FILE... --beam {made}{shift}"
+            terminal.print_line(f"  of unknown objects with this vibrissa: {of}")
     return AGREES if found.explains else DISAGREES

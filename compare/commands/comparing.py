@@ -75,7 +75,10 @@ def turned(job: AnyJob, files: Sequence[Path], rig: RigFiles) -> AnyJob:
     if way is None and files:
         passes = [Readings.read(file) for file in files]
         check_one_way(passes)
-        way = passes[0].provenance["direction"]
+        # Loads of the other direction are those of reversed rows, of a stage that counts back or of
+        # wrong signs: the case's own direction shows which.
+        if passes[0].bends_left == passes[0].runs_right:
+            way = passes[0].provenance["direction"]
     sweep = job.case.sweep
     if way in (None, sweep.direction):
         return job

@@ -112,7 +112,7 @@ def physical_faults(
         rows[:, says(reference.table["phase"], "free")] = np.nan
 
     def displaced(
-        text: str, only: Floats, most: float, rate: float | Floats, at: FootPlace
+        text: Callable[[float], str], only: Floats, most: float, rate: float | Floats, at: FootPlace
     ) -> Cause:
         """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
@@ -123,19 +123,30 @@ def physical_faults(
         def acts(size: float, added: Floats, foot_x: Floats) -> Floats:
             return np.where(only > 0, _between(at(size, foot_x), foot_x, added), added)
 
-        return Cause(text.format, only * slope * rate, -most, most, change, acts)
+        return Cause(text, only * slope * rate, -most, most, change, acts)
 
-    see = ", see `--offset auto`" if name == "foot_x" else ""
+    taken = found.offset.value / size_of
+
+    def offset(size: float) -> str:
+        said = f"{name} {size:+.2e} {unit} off, the same at all stations: an offset (or a lag)"
+        if taken:
+            in_all = (
+                f"{taken:+.2e} {unit} that were taken off, so {size + taken:+.2e} {unit} in all"
+            )
+            return f"{said} beside the {in_all}: something else that is off imitates an offset"
+        see = ", see `--offset auto`" if name == "foot_x" and not found.offset.unknown else ""
+        return f"{said}{see}"
+
     # Farther off the readings are no longer linear in it; `offset` is there for that.
     yield displaced(
-        f"{name} {{:+.2e}} {unit} off, the same at all stations: an offset (or a lag){see}",
+        offset,
         every,
         0.1,
         -size_of,
         lambda size, foot_x: foot_x - size * size_of,
     )
     yield displaced(
-        f"scale of the stage {{:+.2%}} off: {name} is too large by that, counted from 0",
+        f"scale of the stage {{:+.2%}} off: {name} is too large by that, counted from 0".format,
         every,
         0.2,
         -x,
@@ -144,7 +155,9 @@ def physical_faults(
     way = direction(reference) * size_of
     for one, felt in zip(np.eye(3), CLAMP_READINGS, strict=True):
         text = f"{felt} lags by {{:+.2e}} {unit} of the clamp's way: its channel is late"
-        yield displaced(text, one[:, None], 0.1, -way, lambda size, foot_x: foot_x - size * way)
+        yield displaced(
+            text.format, one[:, None], 0.1, -way, lambda size, foot_x: foot_x - size * way
+        )
     exact = Resolved.of(reference, x)
     if exact is not None:
         yield from _solved(exact, table, scale)

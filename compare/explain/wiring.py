@@ -83,7 +83,8 @@ def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
             "all three readings have the opposite sign: the vibrissa's action on the clamp instead "
             "of the clamp's on the vibrissa"
         )
-    return f"opposite sign of {' and '.join(negated)}"
+    turned = ", or the foot moves the other way" if negated == ["force_x", "moment_z"] else ""
+    return f"opposite sign of {' and '.join(negated)}{turned}"
 
 
 def _rotated(true: Floats, seen: Floats, scale: Floats) -> Iterator[Misreading]:

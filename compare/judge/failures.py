@@ -42,6 +42,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
     _, unit = found.reference.running_unit
     yield from _order(found)
     yield from _contact(found)
+    yield from _offset(found)
     yield from _components(found, limits, noise, f"{found.reference.running} = {{:.5g}} {unit}")
     asked = limits.limits()
     for which, right in found.phase_agreement().items():
@@ -182,6 +183,13 @@ def _events(
 def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator[Failure]:
     said = f"{untrusted} of {stations} are not to be trusted" + (f" ({why})" if why else "")
     yield from _more("stations", said, untrusted, limit, limit * stations)
+
+
+def _offset(found: Measurement) -> Iterator[Failure]:
+    if found.offset.unknown:
+        said = f"none was found ({found.offset.unknown}): compared without one"
+        todo = "see the cause, sweep more of the contact, or give the offset as a number"
+        yield Failure("offset", said, todo, weight=_FOLLOWS)
 
 
 def _order(found: Measurement) -> Iterator[Failure]:

@@ -9,6 +9,7 @@ import pandas as pd
 
 from analytic import InputError, Readings
 from compare.align.offset import (
+    NoOffsetError,
     Offset,
     checked_offset,
     estimate_offset,
@@ -150,12 +151,11 @@ def measure(
     comparable = in_units_of(reference, candidate)
     check_unit_of_length(reference, comparable, judged["reference"])
     if offset == "auto" and not order.opposite:
-        shift = estimate_offset(
-            reference,
-            comparable,
-            judged["reference"],
-            judged["candidate"] if comparable is candidate else classify(comparable),
-        )
+        of_units = judged["candidate"] if comparable is candidate else classify(comparable)
+        try:
+            shift = estimate_offset(reference, comparable, judged["reference"], of_units)
+        except NoOffsetError as why:
+            shift = Offset(0.0, unknown=str(why))
     else:  # a sweep the other way has no offset to this one
         shift = Offset(0.0 if offset == "auto" else checked_offset(offset))
     candidate = without_offset(candidate, shift.value)

@@ -194,5 +194,4 @@ def _left(found: Calibration | FittedObject | FittedBody) -> Iterator[Text]:
     """What the fit leaves, and what is known of the noise."""
     yield Text(f"the fit leaves {found.misfit:.2g} times the noise")
     names = COMPONENTS if isinstance(found, FittedBody) else CLAMP_READINGS
-    for said in found.noise.said(names):
-        yield Text(f"{said}; the intervals know it")
+    yield from map(Text, found.noise.said(names))

@@ -237,7 +237,7 @@ def _offset(comparison: Comparison) -> str:
     """In L, and in the readings' own unit unless that is L; empty if there is none."""
     beam, offset = comparison.reference.beam, comparison.offset
     if not (offset.value or offset.uncertainty):
-        return ""
+        return "none was found" if offset.unknown else ""
     value, unsure = place(offset.value / beam.length), short(offset.uncertainty / beam.length)
     if beam == Beam():
         return f"{value} ± {unsure} L"

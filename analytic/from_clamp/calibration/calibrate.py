@@ -13,7 +13,14 @@ from analytic.from_clamp.calibration.unknowns import LAG, OFFSET, UNKNOWNS, Soug
 from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
 from analytic.from_clamp.jitter import foot_jitter
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
-from analytic.from_clamp.passes import Consistency, alike_by_chance, as_passes, consistency
+from analytic.from_clamp.passes import (
+    ROUNDING,
+    Consistency,
+    alike_by_chance,
+    as_passes,
+    consistency,
+    left_by_noise,
+)
 from analytic.from_clamp.reconstruct import doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
@@ -38,7 +45,6 @@ _STARTS = 3
 _ENOUGH = 4000  # stations of which a fit is sought
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
-_ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
 _NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
@@ -116,9 +122,12 @@ class Calibration(Shown):
 
     @property
     def explains(self) -> bool:
-        """Whether noise alone explains what the fit leaves, and what passes differ by."""
-        of_all = self.passes is None or (self.passes.consistent and not self.passes.leave_alike)
-        return not self.misfit_shows and of_all
+        """Whether noise alone explains what the fit leaves, and what passes differ by.
+
+        What remembers longer than a pass may be noise only if three passes differ in it.
+        """
+        of_noise = left_by_noise(self.noise, self.passes, self.misfit)
+        return not self.misfit_shows and of_noise and (not self.passes or self.passes.consistent)
 
     def _tiles(self) -> dict[str, object]:
         return {
@@ -206,19 +215,19 @@ def calibrate(
         fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
         for name, number in zip(names, numbers.tolist(), strict=True):
             _check_inside(name, number, fit.sought(numbers))
+        covariance = known.covariance
+        deviations = np.sqrt(np.diag(covariance))
+        correlation = covariance / np.outer(deviations, deviations)
+        hidden = None
+        if np.abs(correlation - np.eye(len(names))).max() > _ALIKE:
+            hidden = undistinguished(fit, numbers, covariance)
+        for i, number in enumerate(numbers.tolist()):
+            if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
+                raise _not_distinguished(names, covariance, i, hidden)
     except InputError as error:
         if (why := doubt_of_case(passes[0], case)) is None:
             raise
         raise error.because(why) from error
-    covariance = known.covariance
-    deviations = np.sqrt(np.diag(covariance))
-    alike_most = np.abs(covariance / np.outer(deviations, deviations) - np.eye(len(names))).max()
-    hidden = None
-    if alike_most > _ALIKE:
-        hidden = undistinguished(fit, numbers, covariance)
-    for i, number in enumerate(numbers.tolist()):
-        if not DOUBLE_SIDED_95 * deviations[i] <= kinds[i].widest * max(1.0, abs(number)):
-            raise _not_distinguished(names, covariance, i, hidden)
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass, known.alike) if len(passes) > 1 else None
 
@@ -234,7 +243,7 @@ def calibrate(
         sought.case,
         sought.offset,
         sought.lag,
-        covariance / np.outer(deviations, deviations),
+        correlation,
         len(fit.measured.foot_x),
         misfit,
         not explained_by_noise(misfit, fit.freedom, fit.measured.vague),
@@ -257,7 +266,7 @@ def doubt_of_case(readings: Readings, case: Case) -> str | None:
 def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
-    jittered = _with_jitter(fit, numbers) if cost > _ROUNDING**2 * fit.freedom else None
+    jittered = _with_jitter(fit, numbers) if cost > ROUNDING**2 * fit.freedom else None
     if jittered is not None:
         fit = fit.of(jittered)
     first = numbers
@@ -351,9 +360,11 @@ def _knowing_the_noise(
 ) -> tuple[Floats, Estimated, float]:
     """The numbers that are best for the noise that the readings show.
 
-    And by how much zeros and their drift lessen the sum of squares that there was.
+    And by how much zeros and their drift, and hum beside a stated noise, lessen the sum of squares
+    that there was.
     """
     measured = fit.measured
+    curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
     shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
     along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
     if len(measured.rows) > 1 or measured.bend.any():
@@ -376,18 +387,17 @@ def _knowing_the_noise(
         found = estimate(
             left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
         )
-        relieved.append(found.relief)
+        relieved.append(curved * found.relief + least * found.of_hum)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)
         if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined
             break
         numbers = moved
-    curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
     straight, bent = np.split(nuisances, [2 * len(CLAMP_READINGS)], axis=2)
     explained = np.concatenate([by_number, bent], axis=2) if curved else by_number
     alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
     found = replace(found, by_pass=by_pass, alike=alike)
-    return numbers, found, relieved[0] if curved else 0.0
+    return numbers, found, relieved[0]
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -18,7 +18,7 @@ from analytic.from_clamp.correlated import Estimated
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.object.families import Family, families
-from analytic.from_clamp.passes import Consistency, as_passes, consistency
+from analytic.from_clamp.passes import Consistency, as_passes, consistency, left_by_noise
 from analytic.from_clamp.reconstruct import reconstruct, require_beam
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
@@ -266,7 +266,7 @@ def _object(
         },
         misfit=misfit,
         explains=explained_by_noise(misfit, fit.freedom, fit.measured.vague)
-        and (alike is None or not alike.leave_alike),
+        and left_by_noise(known.noise, alike, misfit),
         bic=-2 * known.likelihood + len(kinds) * float(np.log(data)),
         stations=stations,
         noise=known.noise,

@@ -12,6 +12,7 @@ from analytic.from_clamp.contact import LONGEST
 from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
+from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import require_plain
@@ -261,14 +262,16 @@ def _fitted(
             raise _undetermined(family)
     known = _with_noise((measured - moved) / over, slopes / over[:, :, None], passes, stated)
     numbers = numbers + known.numbers
-    misfit = float(np.sqrt((((measured - moved) / over) ** 2).sum() / (left.size - len(numbers))))
+    square = float((((measured - moved) / over) ** 2).sum()) - stated * known.of_hum
+    misfit = float(np.sqrt(max(square, 0.0) / (left.size - len(numbers))))
     found = _estimates(family, numbers, known.covariance, length)
     return FittedBody(
         family=family.name,
         found=found,
         body=family.body(numbers).scaled(length),
         misfit=misfit,
-        explains=explained_by_noise(misfit, left.size - len(numbers)),
+        explains=explained_by_noise(misfit, left.size - len(numbers))
+        and left_by_noise(known.noise, None, misfit),
         bic=-2 * known.likelihood + len(numbers) * float(np.log(left.size)),
         stations=len(measured),
         noise=known.noise,

@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from analytic import Beam, Case, InputError, Sweep, calibrate, circle, relative_noise, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Sweep,
+    calibrate,
+    circle,
+    fit_object,
+    relative_noise,
+    solve_sweep,
+)
 from analytic.from_clamp.passes import alike_by_chance
 
 LEANING = Case(Beam(), circle(0.25, (0.05, 0.8)), Sweep(260), clamp_angle=np.radians(2.0))
@@ -59,6 +70,31 @@ def test_what_all_passes_leave_alike_is_no_noise():
     assert not found.explains
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_what_remembers_longer_than_a_pass_may_be_no_noise(count):
+    """The same object past one pass: it left 1.1 times the noise, and was called right."""
+    case = replace(UPRIGHT, sweep=Sweep(600))
+    seen = passes(case, np.random.default_rng(1), 0.0, count)
+    assert calibrate(seen, case).explains
+    found = calibrate(seen, replace(case, profile=circle(0.2575, (0.05, 0.8))))
+    assert not found.misfit_shows
+    assert not found.explains
+    assert any("longer than a pass" in said for said in found.noise.said(CLAMP_READINGS))
+
+
+@pytest.mark.parametrize("period", [2.4, 7.3])
+def test_hum_beside_a_stated_noise_is_noise(period):
+    """A circle was called none: of 1 % of noise beside 2 % of hum 1.7 times was left."""
+    (one,) = passes(UPRIGHT, np.random.default_rng(7), 0.0, 1)
+    size = relative_noise(one, 0.01)
+    wave = np.sin(2 * np.pi * np.arange(len(one.table)) / period)
+    columns = {name: one.values(name) + 2 * x * wave for name, x in size.items()}
+    found = fit_object(replace(one, table=one.table.assign(**columns)), "circle", size)
+    assert found.noise.hum == pytest.approx(period, rel=1e-2)
+    assert found.misfit == pytest.approx(1, abs=0.1)
+    assert found.explains
+
+
 @pytest.mark.parametrize(("memory", "size"), [(0.0, 0.5), (0.9, 1.5)])
 def test_passes_of_noise_leave_the_same_by_chance_alone(memory, size):
     """With a zero of its own each: of 200 sets 10 are below 0.05; that it is 25 is no chance.
@@ -97,6 +133,13 @@ def test_passes_that_differ_by_noise_alone_are_called_so():
         found.append(calibrate(exact, UPRIGHT).passes)
     assert np.mean([one.chi_square for one in found]) == pytest.approx(3, abs=0.6)
     assert sum(one.consistent and not one.leave_alike for one in found) >= 194
+
+
+def test_a_sign_that_hides_the_numbers_is_named():
+    (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
+    other = replace(one, table=one.table.assign(force_y=-one.values("force_y")))
+    with pytest.raises(InputError, match="likely the sign of force_y"):
+        calibrate(other, UPRIGHT, ["flexural_rigidity", "offset"])
 
 
 def test_rows_in_reverse_order_are_named_as_that():

@@ -1,6 +1,7 @@
 """Readings as a rig writes them, read, compared and reconstructed."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,9 @@ import pandas as pd
 import pytest
 
 from analytic import SENSED, Readings, named_case, solve_sweep
+from compare.commands.comparing import turned
+from compare.commands.rig_files import RigFiles
+from compare.read.case import load_case
 from tests.compare.command import vibrissa
 from tests.compare.commands.case_files import CASE, RIG_COLUMNS, UNITS, as_a_rig
 
@@ -107,14 +111,28 @@ def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
         ((*COMPARED, "--tolerances", "none.toml"), "none.toml"),
         ((*COMPARED, "--tolerances", "case.toml"), "[tolerances]"),
         ((*COMPARED, "--beam", "rig.csv"), "rig.csv"),
-        (("compare", "analytic.parquet", "few.csv", *RIG_COLUMNS, "--offset", "auto"),
-         "offset = ambiguous"),
     ],
-)  # fmt: skip
+)
 def test_what_is_missing_or_wrong_is_said(rig, words, said):
-    (rig / "few.csv").write_text("\n".join((rig / "rig.csv").read_text().splitlines()[:6]))
     vibrissa(*words, cwd=rig).refused(said)
     assert not (rig / "results").exists()
+
+
+@pytest.mark.parametrize("wrong", ["rows", "foot_x", "moment_z"])
+def test_passes_with_the_loads_of_the_other_direction_are_held_against_the_cases(wrong, tmp_path):
+    """They were held against a sweep the other way, and said to have two wrong signs."""
+    exact = solve_sweep(named_case("parabola"))
+    table = exact.table.iloc[::-1] if wrong == "rows" else exact.table.copy()
+    if wrong != "rows":
+        table[wrong] *= -1
+    way = "left" if wrong == "moment_z" else "right"
+    known = {**exact.provenance, "direction": way}
+    replace(exact, table=table.reset_index(drop=True), provenance=known).write(
+        tmp_path / "a.parquet"
+    )
+    rig = RigFiles((), None, None, "world")
+    job = turned(load_case("parabola"), [tmp_path / "a.parquet"], rig)
+    assert job.case.sweep.direction == "left"
 
 
 def test_that_length_and_rigidity_are_one_is_said(tmp_path):
