@@ -97,7 +97,7 @@ def test_a_second_contact_that_one_sweep_lacks_is_found():
 
 
 def test_a_phase_is_not_misjudged_where_two_places_touch():
-    """Neither phase's condition holds there: the clamp can tell of none."""
+    """Neither phase's condition holds there."""
     case = Case(Beam(natural_curvature=1.2), circle(1.0, (0.0, 0.4)), Sweep(stations=60))
     exact = solve_sweep(case)
     two = exact.table["second_contact_x"].notna()
