@@ -26,7 +26,9 @@ _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
-_SURELY = 0.95  # probability of a memory longer than a pass; white noise never has it of 25 sweeps
+_SURELY = (
+    0.95  # probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it
+)
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
