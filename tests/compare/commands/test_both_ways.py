@@ -108,7 +108,7 @@ def test_a_calibration_finds_the_lag_and_writes_the_case(rig, tmp_path):
     without = vibrissa(*words, "--out", "without", cwd=tmp_path)
     without.ended(1, "the readings come after the positions", "fit lag too")
     done = vibrissa(*words, "--fit", "flexural_rigidity,lag", "--out", "found", cwd=tmp_path)
-    done.ended(0, "Next: vibrissa compare found/case.toml")
+    done.ended(0, "Next: vibrissa compare found/case.toml", "reconstruct FILE... --beam found/case")
     found = json.loads((tmp_path / "found" / "calibration.json").read_text())["found"]
     for name, true in (("flexural_rigidity", 1e-4), ("lag", LAG)):
         assert found[name]["lowest"] <= true <= found[name]["highest"], name
