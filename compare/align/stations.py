@@ -31,10 +31,11 @@ class Alignment:
     # and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     table: pd.DataFrame
     # Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
-    # (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
-    # itself); ``dropped`` (zeros where the reference is in contact, between loads of its own);
-    # ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on both sides,
-    # or a jump between them: there is nothing to interpolate); ``outside`` (beyond the reference).
+    # (contact in one sweep only, as between two snap-offs); ``reference_untrusted`` (there, or on
+    # one side); ``untrusted`` (the candidate says so itself, and the reference does not);
+    # ``dropped`` (zeros where the reference is in contact, between loads of its own);
+    # ``between_phases`` (no reference stations of one phase on both sides, or a jump between them:
+    # there is nothing to interpolate); ``outside`` (beyond the reference).
     counts: dict[str, int]
 
     def __repr__(self) -> str:
@@ -84,13 +85,16 @@ def align(
     stretch = np.searchsorted(starts, nearest, side="right") - 1
     covering = np.where(same, stretch, _covering(x_ref, starts, x))
     state = np.where(same, phase[nearest], np.where(covering < 0, "", phase[starts[covering]]))
+    above = np.searchsorted(x_ref[order], x)
+    beside_it = order[np.clip([above - 1, above], 0, len(order) - 1)]
+    unknown = (phase[np.where(same, nearest, beside_it)] == "").any(axis=0)
     idle = candidate_phase.phase == "free"
     # The first that holds, in the order of the reasons.
     why_not = {
+        "reference_untrusted": unknown & ~outside,
         "untrusted": candidate_phase.phase == "",
         "outside": outside,
         "between_phases": covering < 0,
-        "reference_untrusted": state == "",
         "free": (state == "free") & idle,
         "dropped": dropped & idle,
         "one_free": (state == "free") | idle,

@@ -140,7 +140,12 @@ def test_an_unsettled_station_of_the_reference_parts_its_phase():
     assert 18 not in same.table["station"].to_numpy()
     between = paired(made(BETWEEN), reference)
     assert {17, 18}.isdisjoint(between.table["station"])
-    assert between.counts["between_phases"] == len(BORDERS) + 2
+    assert between.counts["between_phases"] == len(BORDERS)
+    assert between.counts["reference_untrusted"] == 2
+    neither = paired(
+        made(BETWEEN, status=np.where(np.arange(40) < 18, "unsettled", "ok")), reference
+    )
+    assert neither.counts["untrusted"] == 17  # not where the reference has no readings, either
 
 
 def test_the_same_station_is_one_to_a_billionth_of_the_length():
