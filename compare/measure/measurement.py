@@ -23,7 +23,13 @@ from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
 from compare.sense.record import Record, check_size, inspect_record
-from compare.sense.transitions import TRANSITIONS, locate_transitions, second_contacts, snap_off
+from compare.sense.transitions import (
+    TRANSITIONS,
+    locate_transitions,
+    second_contacts,
+    shows_beyond,
+    snap_off,
+)
 
 _SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more is no noise
 
@@ -172,7 +178,13 @@ def measure(
 
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
     snap = at(*(snap_off(sweep, judged[which]) for which, sweep in sweeps.items()))
-    one, other = (locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items())
+    one, other = (dict(locate_transitions(sweep, judged[which])) for which, sweep in sweeps.items())
+    for name in ("phase_b_start", "phase_b_end"):
+        for mine, theirs in ((one, other), (other, one)):
+            place, off = mine[name]
+            if place is not None and theirs[name][0] is None:
+                seen = (shows_beyond(name, place, off, sweeps[i], judged[i]) for i in sweeps)
+                mine[name] = mine[name] if all(seen) else theirs[name]
     events = {name: at(one[name], other[name]) for name in TRANSITIONS}
     twice = second_contacts(reference), second_contacts(candidate)
     if twice[0] and twice[1]:

@@ -57,6 +57,21 @@ def locate_transitions(
     return found
 
 
+def shows_beyond(
+    name: str, place: float, off: float, readings: Readings, judged: Classification
+) -> bool:
+    """Whether stations touch beyond a limit of Phase B, by more than it may be off.
+
+    The tip may hold for less than a station before the snap-off, or after the first contact. A
+    sweep that begins or ends in contact shows it, as far as it is asked here.
+    """
+    at = readings.running_values
+    touching = np.flatnonzero(np.isin(judged.phase, ("tip", "tangent")))
+    way, last = (1, len(at) - 1) if name == "phase_b_end" else (-1, 0)
+    ahead = way * np.sign(at[-1] - at[0]) * (at[touching] - place)
+    return bool((ahead > off + _ALIKE * np.ptp(at)).any() or last in touching)
+
+
 def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, float]:
     """Where along the sweep the snap-off is, and how far it may be off.
 

@@ -1,5 +1,7 @@
 """The phases that the comparison judges by are those of the reconstruction."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, seed, settings
@@ -72,6 +74,21 @@ def test_two_values_that_are_one_to_rounding_are_no_fault(apart):
     """No polynomial goes through them; the limit is between the two stations all the same."""
     foot_x, values = np.arange(3.0), np.array([-1.0, -1.0 + apart, 1.0])
     assert 1 <= transitions._zero(foot_x, values, np.arange(3), 1, 2) <= 2
+
+
+@pytest.mark.parametrize(("kept", "agrees"), [(0, True), (3, False)])
+def test_a_tip_that_holds_for_less_than_a_station_may_be_missed(kept, agrees):
+    """Between the last station that touches and the snap-off; more stations would show it."""
+    exact = solve_sweep(Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(stations=80)))
+    tip = np.flatnonzero(exact.table["phase"] == "tip")
+    last = tip[tip > np.flatnonzero(exact.table["phase"] == "tangent")[-1]]
+    table = exact.table.drop(index=last[: len(last) - kept])
+    other = replace(exact, table=table.reset_index(drop=True))
+    judged = classify(other)
+    judged.phase[judged.phase == "tip"] = "tangent"
+    place = transitions.locate_transitions(exact, classify(exact))["phase_b_end"]
+    assert transitions.shows_beyond("phase_b_end", *place, other, judged) is not agrees
+    assert transitions.shows_beyond("phase_b_end", *place, exact, classify(exact))
 
 
 def test_a_second_contact_that_one_sweep_lacks_is_found():
