@@ -106,11 +106,16 @@ class Judged(SweepPair[Sweep]):
     def remarks(self) -> tuple[str, ...]:
         """What is to be known of both sweeps, and of the limits that are exceeded."""
         failed = " ".join(self.failures)
+        unknown = [*untrusted_stretches(self.reference)]
+        beside = [
+            stretch
+            for stretch in untrusted_stretches(self.candidate)
+            if stretch not in failed and stretch not in unknown
+        ]
         notes: list[str] = [
             f"note: not all stations of the {which} are compared: {stretch}"
-            for which, sweep in (("reference", self.reference), ("candidate", self.candidate))
-            for stretch in untrusted_stretches(sweep)
-            if which == "reference" or stretch not in failed
+            for which, stretches in (("reference", unknown), ("candidate", beside))
+            for stretch in stretches
         ]
         if self.exceeded and self.tolerances.conventional:
             notes.append(CONVENTION)

@@ -62,14 +62,17 @@ def shows_beyond(
 ) -> bool:
     """Whether stations touch beyond a limit of Phase B, by more than it may be off.
 
-    The tip may hold for less than a station before the snap-off, or after the first contact. A
-    sweep that begins or ends in contact shows it, as far as it is asked here.
+    The tip may hold for less than a station before the snap-off, or after the first contact. Where
+    it is not free beyond the last station that touches, nothing excuses a sweep.
     """
     at = readings.running_values
     touching = np.flatnonzero(np.isin(judged.phase, ("tip", "tangent")))
-    way, last = (1, len(at) - 1) if name == "phase_b_end" else (-1, 0)
+    if not touching.size:
+        return True
+    way, last = (1, touching.max()) if name == "phase_b_end" else (-1, touching.min())
     ahead = way * np.sign(at[-1] - at[0]) * (at[touching] - place)
-    return bool((ahead > off + _ALIKE * np.ptp(at)).any() or last in touching)
+    free = judged.phase[last + way : last + way + 1] == "free"
+    return bool((ahead > off + _ALIKE * np.ptp(at)).any() or not free.any())
 
 
 def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, float]:
