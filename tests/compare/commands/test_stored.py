@@ -45,7 +45,7 @@ def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     sweep.write(tmp_path / "mujoco-rod.partial.parquet")
     vibrissa("report", ".", cwd=tmp_path).ended(0)
     assert (tmp_path / "report.html").exists()
-    assert read_run(tmp_path).tolerances == Tolerances()
+    assert read_run(tmp_path).tolerances == Tolerances().suited_to(sweep)
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,10 @@ FOUND = {
     "Elephant's trunk": (
         {"clamp", "limits", "radius", "gravity", "contact", "damping"}, set(), 0.0141,
     ),
-    # A hand of a million kilograms: MuJoCo's solver stopped before contacts held.
-    "Whip of 15": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0095),
-    "Whip of 25": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0042),
+    # A hand of a million kilograms: MuJoCo's solver stopped before contacts held. Contacts five
+    # times as hard are 9.1e-3 and 4.0e-3 off, but chatter: at 5 stations of 60, which is a fault.
+    "Whip of 15": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0125),
+    "Whip of 25": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0063),
     # A cone of 1 to 30: its last links are too few.
     "Rat's whisker": ({"links", "gravity", "contact"}, {"links"}, 0.04),
     # Boxes: what touches them feels steps of their thickness.
