@@ -21,8 +21,9 @@ from mujoco_models.export.whisker import Whisker
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
-# Segments at rest, and their rms: past ten cases what was exported was up to 3.6e-4 farther off.
-REFERENCE, REFERENCE_OFF = 80, 5e-4
+# Segments at rest, and their rms: past ten cases, under MuJoCo 3.17 and 4.0, what was exported was
+# up to 5.2e-4 farther off than from them.
+REFERENCE, REFERENCE_OFF = 80, 6e-4
 _SHARE = 0.8  # of the wanted error; the rest is for what rounds the file
 # Segments, time step [T1] and contact stiffness [EI/L^3], from coarse to fine: as stiff as a sweep
 # at 0.1 L/T1 takes without chatter, and then harder, for slower ones.

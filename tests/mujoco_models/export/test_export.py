@@ -149,7 +149,7 @@ def test_a_tube_of_a_material(tmp_path):
         (["--material", "2e11,1e-4,2e-4"], "--material = .*: must be with radii"),
         (["--density", "heavy"], "quantity = 'heavy': must be a finite number with a unit"),
         (["--speed", "2"], "--error = 0.01: must be at least .* at 2 L/T1; ask for a larger error"),
-        (["--error", "0.0005"], "--error = 0.0005: must be above 0.0005, .*ask for a larger error"),
+        (["--error", "0.0006"], "--error = 0.0006: must be above 0.0006, .*ask for a larger error"),
     ],
 )
 def test_what_cannot_be_written_is_a_line(words, line, tmp_path):
