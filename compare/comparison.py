@@ -69,6 +69,16 @@ class Comparison(Judged[Readings], Measurement):
         """What the disagreement looks like; None if it agrees, or matches no known cause."""
         return None if self.agrees else likely_cause(self, self.tolerances, self.noise)
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is to be known of both sweeps, and how well jumps of the contact are."""
+        jumped, (size, unit) = self.alignment.counts["beside_jump"], self.reference.running_unit
+        if not jumped:
+            return super().remarks
+        step = float(np.abs(np.diff(self.reference.running_values)).max()) / size
+        said = "note: stations beside a jump of the contact, whose place is known to "
+        return (*super().remarks, f"{said}{step:.2g} {unit}, are not compared: {jumped}")
+
     def validated(
         self,
         case: Case,

@@ -30,7 +30,8 @@ class Alignment:
     # reference's), ``contact_arc_length`` (the reference's at its nearest station, from the clamp)
     # and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     table: pd.DataFrame
-    # Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
+    # Every station of the candidate in one of: ``compared``; ``beside_jump`` (as the reference is
+    # on its other side: where it jumps is known to a station); ``free`` (in both); ``one_free``
     # (contact in one sweep only, as between two snap-offs); ``reference_untrusted`` (there, or on
     # one side); ``untrusted`` (the candidate says so itself, and the reference does not);
     # ``dropped`` (zeros where the reference is in contact, between loads of its own);
@@ -114,7 +115,7 @@ def align(
             here = near[covering[near] == covered]
             other = interpolant(x_ref[beyond], values[:, beyond])(x[here])
             jumped = (np.abs(own[:, here] - other) / scale).max(axis=0) < off[here]
-            reasons[here[jumped]] = "between_phases"
+            reasons[here[jumped]] = "beside_jump"
     compared = reasons == "compared"
     columns = {
         "station": np.flatnonzero(compared),
@@ -125,7 +126,9 @@ def align(
     for name, row in zip(CLAMP_READINGS, there, strict=True):
         columns[f"{name}_reference"] = row[compared]
         columns[f"{name}_candidate"] = candidate.values(name)[compared]
-    counts = {reason: int((reasons == reason).sum()) for reason in ("compared", *why_not)}
+    counts = {
+        reason: int((reasons == reason).sum()) for reason in ("compared", "beside_jump", *why_not)
+    }
     return Alignment(pd.DataFrame(columns), counts)
 
 

@@ -96,12 +96,13 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 def second_contacts(readings: Readings) -> dict[str, tuple[float | None, float]] | None:
     """Where along the sweep a second contact begins and ends, and how far that may be off.
 
-    The source's own values where it locates events, as far as it could; else half-way between
+    The source's own values where it locates them, as far as it could; else half-way between
     stations. None if it does not look for one, and for an end that is the snap-off.
     """
-    if "events" in readings.provenance or "second_contact_x" not in readings.table:
-        recorded = readings.provenance.get("events", {})
-        return {name: (recorded[name], 0.0) for name in SECOND if name in recorded} or None
+    recorded = readings.provenance.get("events", {})
+    known = {name: (recorded[name], 0.0) for name in SECOND if name in recorded}
+    if known or "second_contact_x" not in readings.table:
+        return known or None
     found: dict[str, tuple[float | None, float]] = dict.fromkeys(SECOND, (None, 0.0))
     at = readings.running_values
     touching = np.flatnonzero(np.isfinite(readings.values("contact_x")))
