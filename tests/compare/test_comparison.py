@@ -52,6 +52,18 @@ def test_other_stations_past_corners_agree(seed):
     assert found.alignment.counts["between_phases"] < 16
 
 
+def test_a_limit_says_how_far_it_may_be_off_where_there_are_two_stretches_of_phase_b():
+    """At 200 stations the one is longer, at 137 the other; and past a corner the contact jumps."""
+    points = [(-0.709, 0.686), (0.126, 0.565), (0.453, 0.606), (0.527, 0.623), (0.622, 0.652)]
+    case = Case(Beam(radius=1e-3), polygon([*points, (0.808, 0.743)]))
+    ends = case.foot_x[0], case.foot_x[-1]
+    exact, other = solve_sweep(case), solve_sweep(replace(case, sweep=Sweep(137, *ends)))
+    end = compare(exact, other).events["phase_b_end"]
+    assert abs(end.difference) > 0.2 and end.agrees(0.01)
+    one = locate_transitions(exact, classify(exact))["phase_b_end"]
+    assert 0.2 < one[1] < 0.4
+
+
 @pytest.mark.parametrize(("level", "share"), [(1e-4, 0.99), (1e-3, 0.98), (1e-2, 0.91)])
 def test_phases_of_noisy_readings(exact, level, share):
     """Observed: 1, 0.99, 0.925. At 1 % the first stations' force drowns, and transitions blur."""

@@ -1,6 +1,7 @@
 """The phases that the comparison judges by are those of the reconstruction."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -74,6 +75,19 @@ def test_two_values_that_are_one_to_rounding_are_no_fault(apart):
     """No polynomial goes through them; the limit is between the two stations all the same."""
     foot_x, values = np.arange(3.0), np.array([-1.0, -1.0 + apart, 1.0])
     assert 1 <= transitions._zero(foot_x, values, np.arange(3), 1, 2) <= 2
+
+
+@pytest.mark.parametrize(
+    ("criterion", "off"), [((0.05, 0.15, 0.25), 0.0), ((0.4, 0.41, 0.42), 0.25)]
+)
+def test_a_limit_at_which_the_contact_jumps_says_how_far_it_may_be_off(criterion, off):
+    """From inside it comes to zero half-way, from outside there, or never: at the last station."""
+    judged = SimpleNamespace(
+        criterion=np.array([0, 0, 0, *criterion]), shortfall=np.array([0.25, 0.15, 0.05, 0, 0, 0])
+    )
+    at, tip, tangent = np.arange(6.0), np.arange(3, 6), np.arange(3)
+    place, may_be = transitions._limit(at, judged, tip, tangent)
+    assert (place, may_be) == (pytest.approx(2.5 - off), pytest.approx(off, abs=1e-12))
 
 
 @pytest.mark.parametrize(("kept", "agrees"), [(0, True), (3, False)])

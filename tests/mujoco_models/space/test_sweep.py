@@ -121,6 +121,18 @@ def test_prisms_are_touched_where_they_are_flat(body, points):
         assert ours == pytest.approx(theirs, abs=2e-3)
 
 
+def test_normals_of_a_flat_prism_turn_as_its_contour_does():
+    """Not as those of the smaller cylinder that MuJoCo has in its place."""
+    case = SpatialCase(Beam(radius=2e-3), body=FLAT[0], path=FootPath(FLAT[1]))
+    model = compiled(case, SpatialSettings(segments=6))
+    model.place(np.array([0.0, -0.35, 0.0]), model.straight)
+    touch = model.touch(5, 1.0)
+    spot = FLAT[0].nearest(touch.centre, 0.0)
+    assert 0 < np.trace(spot.turning) < 0.02
+    # This bead is 0.05 L inside, which is 5e-3 of the cylinder's 10 L.
+    assert np.trace(model.turning(5, touch)) == pytest.approx(np.trace(spot.turning), rel=1e-2)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(CASES))
 def test_forty_segments_are_within_3e_3_of_the_closed_form(name):
