@@ -81,7 +81,8 @@ class Estimated:
     covariance: Floats  # shape (k, k)
     noise: NoiseFound
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
-    likelihood: float  # logarithm of the readings' probability, but for a constant
+    likelihood: float  # logarithm of the readings' probability over their noise, but for a constant
+    stations: int  # of which that is, neighbours counting as one where there are many
     relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
     of_hum: float  # by which hum does, which is not among that
     # Probability that passes leave so much alike at the same places by chance; None of too few.
@@ -175,6 +176,7 @@ def estimate(
         _described(likely, hum, block, block * max(rows)),
         tuple(scaled(one) for one in by_pass),
         float(logsumexp(weights, axis=0).sum()),
+        len(columns),
         given - float(np.sum(readings**2)) + unfitted,
         float(of_hum),
     )
@@ -300,7 +302,8 @@ def _hum(left: Floats) -> float:
     if power[top] < _LINE * max(np.median(some) for some in beside if some.size):
         return 0.0
     # Of a parabola through its neighbours: half a point off, a line's ends are an eighth of a turn.
-    behind, here, ahead = np.log(power[[top - 1, top, min(top + 1, len(power) - 1)]])
+    near = power[[top - 1, top, min(top + 1, len(power) - 1)]]
+    behind, here, ahead = np.log(np.maximum(near, np.finfo(float).tiny))
     bend = behind - 2 * here + ahead
     off = (behind - ahead) / (2 * bend) if bend < 0 else 0.0
     return float(1 / (cycles[top] + off * cycles[1]))

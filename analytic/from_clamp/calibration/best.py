@@ -166,5 +166,8 @@ def _knowing_the_noise(
     straight, bent = np.split(nuisances, [2 * len(CLAMP_READINGS)], axis=2)
     explained = np.concatenate([by_number, bent], axis=2) if curved else by_number
     alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
-    found = replace(found, by_pass=by_pass, alike=alike)
+    # Of fits that find jitter and such that do not, the noise is not the same.
+    whitened = found.stations * float(np.linalg.slogdet(fit.whitening)[1].mean())
+    likelihood = found.likelihood + whitened
+    found = replace(found, by_pass=by_pass, alike=alike, likelihood=likelihood)
     return numbers, found, relieved[0]

@@ -1,5 +1,7 @@
 """The object as a whole, from readings that SciPy's boundary-value solver made."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,35 @@ def test_a_circle_is_found_from_one_per_cent_of_noise():
     off = np.abs(np.hypot(x - CENTRE[0], y - CENTRE[1]) - RADIUS)
     assert np.all(off < 2 * half)
     assert half.max() < 2e-4
+
+
+@pytest.mark.slow
+def test_hum_does_not_hide_a_circle():
+    """Of 3 %: contact points scatter so far that a circle through them has half of the radius."""
+    rng = np.random.default_rng(2)
+    seen = []
+    for _ in range(3):
+        one = one_pass(rng, 900, 0.005, circle_sweep())
+        wave = 0.03 * np.sin(2 * np.pi * np.arange(900) / 37.3 + rng.uniform(0, 6))
+        size = relative_noise(one, 0.02)
+        columns = {n: one.values(n) + 50 * x * wave for n, x in size.items()}
+        known = {**one.provenance, "free_noise": size}
+        seen.append(replace(one, table=one.table.assign(**columns), provenance=known))
+    found = fit_object(seen, "circle")
+    assert found.noise.hum == pytest.approx(37.3, rel=1e-3)
+    for name, true in TRUE.items():
+        one = found.found[name]
+        assert abs(one.value - true) < 2e-4
+        assert abs(one.value - true) < one.highest - one.lowest
+
+
+@pytest.mark.slow
+def test_jitter_that_is_known_makes_a_circle_likelier(monkeypatch):
+    """By Schwarz's criterion, of noise that is not the same: it was 55 more, and is 22 less."""
+    (one,) = passes(1, noise=2e-3, jitter=2e-5)
+    known = fit_object(one, "circle").bic
+    monkeypatch.setattr("analytic.from_clamp.calibration.best._with_jitter", lambda *_: None)
+    assert known < fit_object(one, "circle").bic - 10
 
 
 @pytest.mark.slow

@@ -34,6 +34,20 @@ def test_passes_alike_are_not_displaced_and_their_mean_is_the_sweep(name, noise)
     assert compared.agrees, compared
 
 
+def test_hum_moves_no_pass():
+    """Each has a phase of its own; they differed with p = 1e-19, and so did the mean."""
+    rng, found = np.random.default_rng(3), []
+    for one in passes("catenary", 3e-3, rng):
+        wave = 0.03 * np.sin(2 * np.pi * np.arange(len(one.table)) / 37.3 + rng.uniform(0, 6))
+        for name in CLAMP_READINGS:
+            one.table[name] += wave * one.table[name].abs().max()
+        found.append(one)
+    several = repeats(found)
+    assert several.shifts.consistent
+    level = compare(exact_sweep("catenary"), several.mean, noise="auto").noise.level
+    assert min(level.values()) > 0.03 / np.sqrt(2) / np.sqrt(6) / 2
+
+
 def test_a_pass_that_is_unlike_the_others_is_named():
     """A sensor that saturates in noise: what is left of the mean agrees, and that is not all."""
     several = [*passes("catenary", 3e-3, np.random.default_rng(2))]
