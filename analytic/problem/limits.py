@@ -59,7 +59,7 @@ class AnyCase(OfVibrissa):
     def require_sweep(self, who: str) -> Sweep:
         """Refuse several objects, and a clamp that turns or leaves its line on its way."""
         self.require_one_object(who)
-        return self._require_line(who)
+        return self.require_line(who)
 
     def require_one_object(self, who: str) -> None:
         if self.others:
@@ -67,7 +67,8 @@ class AnyCase(OfVibrissa):
             remedy = "solve it in closed form (exact), sweep MuJoCo in motion, or sweep past one"
             raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
 
-    def _require_line(self, who: str) -> Sweep:
+    def require_line(self, who: str) -> Sweep:
+        """Refuse a clamp that turns or leaves its line on its way."""
         if not isinstance(self.sweep, Sweep):
             what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
             allowed = f"a Sweep, with the foot along its line: {who} can do no other"

@@ -16,7 +16,7 @@ from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.simulate.budgets import measure_budget, require_rest
 from compare.simulate.dispatch import simulate
-from compare.simulate.target import Fastest, Followed, find_fastest, follow_advice
+from compare.simulate.target import NAIVE, Fastest, Followed, find_fastest, follow_advice
 from mujoco_models.motion import Motion
 
 _SWEEPS = "sweeps of the budget"
@@ -113,6 +113,8 @@ def _advised(advice: Followed) -> list[str]:
         f"  predicted: {advice.predicted:.1e} rms",
         f"  measured: {advice.error:.1e} rms, {took:.1f} ms a station",
     ]
+    if settings.clamp == "naive":
+        said.append(f"  For far fewer segments {NAIVE}.")
     if not advice.reached:
         said.append("  The target was missed: ask for a little less.")
     return said
