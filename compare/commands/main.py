@@ -19,10 +19,9 @@ from compare.commands.inspect import inspect
 from compare.commands.listing import list_what_there_is
 from compare.commands.output import ended_by_signals, warn
 from compare.commands.reconstruct import reconstruct
-from compare.commands.report import report
 from compare.commands.rig import rig
 from compare.commands.run import run, view
-from compare.commands.study import study
+from compare.commands.study import report, study
 from compare.commands.verify import verify
 
 _GONE = {
@@ -63,7 +62,7 @@ class Group(TyperGroup):
                 formatter.write_dl(rows, col_max=width)
 
 
-BAD_INPUT = 2
+AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
 _LONGEST = 800  # characters of an error
 
 app = typer.Typer(
@@ -73,7 +72,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # markup would swallow the brackets of [beam] and [tolerances]
 )
 
-COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
+COMMANDS: dict[str, tuple[Callable[..., bool], ...]] = {
     "Sweep and compare": (run, compare, view),
     "What the clamp says": (reconstruct, calibrate, rig),
     "Models": (inspect, export),
@@ -131,7 +130,7 @@ def _run() -> int:
         if not sys.argv[1:]:
             app(["--help"], standalone_mode=False)
             return BAD_INPUT
-        return app(standalone_mode=False) or 0
+        return DISAGREES if app(standalone_mode=False) is False else AGREES
     except (InputError, TyperException, OSError, ArithmeticError, MemoryError) as error:
         return _refuse(_in_words(error))
     except (typer.Abort, KeyboardInterrupt) as error:

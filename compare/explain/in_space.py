@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.space import SpatialReadings
-from compare.explain.changes import STIFFER
+from compare.explain.budget import STIFFER
 from compare.explain.parts import Account, Parted, Shared
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.settings import SpatialSettings

@@ -13,9 +13,8 @@ from compare.explain.budget import Budget
 from compare.explain.parts import UNRESOLVED, Parted
 from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
-from compare.show.budgets import budget_summary, left_over, phases_table
+from compare.show.budgets import bars, budget_summary, left_over, phases_table
 from compare.show.document import Block, Document, Picture, Table, Text, Tile, Verdict, sections
-from compare.show.figures.budget_bars import bars
 from compare.show.numbers import place, quantity, sentence, short, words
 from compare.show.style import ALONG, PHASE_LETTERS, Along
 

@@ -7,8 +7,7 @@ from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
-from compare.explain.budget import Budget, budget
-from compare.explain.changes import controlled_changes
+from compare.explain.budget import Budget, budget, controlled_changes
 from compare.explain.in_space import budget_in_space, changes_in_space
 from compare.explain.motion import MotionBudget
 from compare.explain.parts import Parted

@@ -14,8 +14,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
-from compare.study.show.results import AXES, WORST, Question, StudyResults, together
-from compare.study.show.slices import Line, lines, plane, words
+from compare.study.show.results import (
+    AXES,
+    WORST,
+    Line,
+    Question,
+    StudyResults,
+    lines,
+    plane,
+    together,
+    words,
+)
 from compare.study.show.tables import pareto_front
 
 Drawings: TypeAlias = dict[str, Callable[[], Figure]]

@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 
 from compare.show.numbers import short
-from compare.study.show.results import Question, StudyResults
-from compare.study.show.slices import Line, lines, words
+from compare.study.show.results import Line, Question, StudyResults, lines, words
 from compare.study.show.tables import vanishing
 
 _FLAT = 1.2  # a number that changes by less than this factor hardly depends on an axis

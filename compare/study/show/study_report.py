@@ -7,7 +7,6 @@ from pathlib import Path
 import pandas as pd
 
 from analytic import InputError
-from analytic.problem.files import write_whole
 from compare.show.document import (
     Block,
     Document,
@@ -19,14 +18,12 @@ from compare.show.document import (
     Verdict,
     sections,
 )
-from compare.show.html import html
-from compare.show.page import png
+from compare.show.page import html, png, write_all
 from compare.study.keep.database import Warn
 from compare.study.keep.store import read_plan, read_rows
 from compare.study.show import pictures, tables
-from compare.study.show.results import Question, StudyResults, asked
+from compare.study.show.results import Question, StudyResults, asked, curves, repeated
 from compare.study.show.sentences import headline, varied
-from compare.study.show.slices import curves, repeated
 
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
 _TABLES = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
@@ -58,12 +55,9 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
     for name, table in numbers.items():
         if not table.empty:
             contents[f"{name}.csv"] = table.to_csv(index=False)
-    page = html(document)
-    place = place or folder
-    (place / "report").mkdir(parents=True, exist_ok=True)
-    for name, content in contents.items():
-        write_whole(place / "report" / name, content)
-    return write_whole(place / "report.html", page)
+    page, place = html(document), place or folder
+    write_all(place / "report", contents)
+    return write_all(place, {"report.html": page})[-1]
 
 
 def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document:
