@@ -23,9 +23,11 @@ def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Flo
         return low
     from scipy.optimize.elementwise import find_root  # slow to load, and many need none
 
-    found = find_root(
-        lambda x, which: function(which.astype(int), x), (low, high), args=(np.arange(low.size),)
-    )
+    def value(x: Floats, which: Floats) -> Floats:
+        return function(which.astype(int), x)
+
+    bounds, each = (low, high), (np.arange(low.size),)
+    found = find_root(value, bounds, args=each)  # type: ignore[arg-type]  # its types have none
     return np.where(found.success, found.x, high)
 
 
