@@ -27,7 +27,7 @@ def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Flo
         return function(which.astype(int), x)
 
     bounds, each = (low, high), (np.arange(low.size),)
-    found = find_root(value, bounds, args=each)  # type: ignore[arg-type]  # its types have none
+    found = find_root(value, bounds, args=each)
     return np.where(found.success, found.x, high)
 
 
