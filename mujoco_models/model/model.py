@@ -22,9 +22,9 @@ from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
 from mujoco_models.model.stiffness import stiffen
 from mujoco_models.model.surface import Surface
-from mujoco_models.model.warned import has_diverged
 from mujoco_models.model.weight import hang, holding
 from mujoco_models.obstacles.protocol import GEOM, Obstacle
+from mujoco_models.quiet import has_diverged
 
 STEP = 1e-3  # of MuJoCo's own motion
 LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
