@@ -149,8 +149,8 @@ ROBOT = """\
 def test_an_attached_model_gets_a_copy_that_the_model_attaches(tmp_path):
     """Once for both places where it is attached; its classes and its sensors are its own."""
     own = LINKS.replace(
-        "<worldbody>", '<default><default class="thin"><geom type="capsule" size="0.01"/></default></default>'
-        '<sensor><force name="f" site="clamp" cutoff="1"/></sensor><worldbody>'
+        "<worldbody>", '<default><default class="thin"><geom type="capsule" size="0.01"/></default>'
+        '</default><sensor><force name="f" site="clamp" cutoff="1"/></sensor><worldbody>'
     ).replace('name="clamp"', 'name="clamp" pos="0 0 0"')  # fmt: skip
     (tmp_path / "links.xml").write_text(own)
     path = tmp_path / "m.xml"
