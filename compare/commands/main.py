@@ -45,9 +45,8 @@ class Group(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401  # typer's own
         if args[0] in _GONE:
-            raise InputError(
-                "command", args[0], "one of `vibrissa --help`", f"use {_GONE[args[0]]}"
-            )
+            instead = f"use {_GONE[args[0]]}"
+            raise InputError("command", args[0], "one of `vibrissa --help`", instead)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401
@@ -138,10 +137,8 @@ def _run() -> int:
     except Exception as error:
         if os.environ.get("VIBRISSA_TRACEBACK"):
             typer.echo(format_exc(), err=True)
-        return _refuse(
-            f"internal error, {type(error).__name__}: {error}; please report it with what "
-            "VIBRISSA_TRACEBACK=1 shows"
-        )
+        said, remedy = f"internal error, {type(error).__name__}: {error}", "VIBRISSA_TRACEBACK=1"
+        return _refuse(f"{said}; please report it with what {remedy} shows")
 
 
 def _in_words(error: Exception) -> str:
@@ -159,9 +156,8 @@ def _in_words(error: Exception) -> str:
         case MemoryError():
             return f"out of memory ({error}); take fewer segments or contour points"
         case ZeroDivisionError() | OverflowError() | FloatingPointError():
-            return (
-                f"a number beyond double precision ({error}); check the units and sizes of the case"
-            )
+            beyond = f"a number beyond double precision ({error})"
+            return f"{beyond}; check the units and sizes of the case"
     return str(error)
 
 
@@ -169,12 +165,9 @@ def _require_utf8(word: str) -> None:
     try:
         word.encode()
     except UnicodeEncodeError as error:
-        raise InputError(
-            "argument",
-            ascii(word),
-            f"text in the encoding of the terminal, {sys.getfilesystemencoding()}",
-            "rename the file or folder, or set LC_ALL=C.UTF-8",
-        ) from error
+        allowed = f"text in the encoding of the terminal, {sys.getfilesystemencoding()}"
+        remedy = "rename the file or folder, or set LC_ALL=C.UTF-8"
+        raise InputError("argument", ascii(word), allowed, remedy) from error
 
 
 def _refuse(message: str) -> int:

@@ -120,12 +120,8 @@ def reported(
 ) -> Path:
     with waiting("drawing"):
         written = write_report(comparison, folder, budget, film, body)
-    print_comparison(comparison)
-    return written
-
-
-def print_comparison(comparison: AnyComparison) -> None:
     terminal.show(*summary_of(comparison))
+    return written
 
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:

@@ -28,6 +28,7 @@ from mujoco_models.settings import Settings
 STIFFER = 10  # times the contact stiffness
 SHARPER = 10  # times less of the corners' radius
 CALMER = 100  # times less out of balance
+_REFINED = "it is refined from there"
 _AT_REST = 1e-8  # EI/L; what all the other sweeps are out of balance by at most
 
 
@@ -45,16 +46,9 @@ def controlled_changes(
     n, k = settings.segments, settings.contact_stiffness
     for name, value, most in (("segments", n, 250), ("contact_stiffness", k, 1e8)):
         if value > most:
-            raise InputError(
-                f"mujoco.{name} of a budget", value, f"at most {most:g}", "it is refined from there"
-            )
-    if corners and settings.corner_radius < 1e-8:
-        raise InputError(
-            "mujoco.corner_radius of a budget",
-            settings.corner_radius,
-            "at least 1e-08",
-            "it is refined from there",
-        )
+            raise InputError(f"mujoco.{name} of a budget", value, f"at most {most:g}", _REFINED)
+    if corners and (radius := settings.corner_radius) < 1e-8:
+        raise InputError("mujoco.corner_radius of a budget", radius, "at least 1e-08", _REFINED)
     rest = replace(settings, tolerance=min(settings.tolerance, _AT_REST))
     plain = replace(rest, obstacle="primitive") if smooth else rest
     sharp = replace(plain, corner_radius=settings.corner_radius / SHARPER) if corners else plain
