@@ -22,6 +22,7 @@ _WHITE = 5.0  # times as likely beforehand as all that remembers
 _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
 _PRIOR = _LONG / _LONG.sum() / _WHITE
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
+_STATED_TO = 0.2  # relative, of a stated noise's variance: the noise is known to a tenth
 _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
@@ -44,14 +45,20 @@ class NoiseFound:
     """What the noise of some channels is like."""
 
     correlation: Floats  # shape (channels,); of the noise at one station with that at the next
-    # Shape (channels,); stations after which the correlated part has fallen to 1/e; 0 if none.
+    # Shape (channels,); stations after which the correlated part has fallen to 1/e; 0 if none. Of
+    # AR(0.9), 9.5, it is 6 to 41 in 80 of 100 sweeps of 94 stations: it is said as "some".
     memory: Floats
     hum: float  # stations in a period of it; 0 where there is none
     lasts: Booleans  # shape (channels,); remembers longer than a pass, as what is no noise does
 
+    @property
+    def remembers(self) -> Booleans:
+        """Of which channels it does, so far that it is said."""
+        return self.correlation > _REMEMBERED
+
     def said(self, names: Sequence[str]) -> Iterator[str]:
         """What a user should know of it, a line each."""
-        known = np.where(self.lasts | (self.correlation <= _REMEMBERED), 0.0, self.memory)
+        known = np.where(self.lasts | ~self.remembers, 0.0, self.memory)
         for name, memory in zip(names, known, strict=True):
             if memory:
                 said = f"the noise of {name} remembers: over some {memory:.0f} stations"
@@ -132,6 +139,10 @@ def estimate(
     freedom = len(columns) - len(rows) * int(np.sum(prior[:-1] == 0))
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
+    if least:
+        # Noise that is stated has no more in all than that, or than what is left.
+        total = square * (1 + _GRID[:, 1:]) / np.maximum(freedom * least**2, square[0])
+        weights -= (np.log(np.maximum(total, 1.0)) / _STATED_TO) ** 2 / 2
     likely = softmax(weights, axis=0)
     draws = _DRAWS if known else _FEW  # where only the noise is sought
     draw = np.random.default_rng(seed)
@@ -308,7 +319,8 @@ def _described(likely: Floats, hum: float, block: int, stations: int) -> NoiseFo
     rho, size = rho ** (1 / block), size / block  # of sums of what remembers longer than they are
     correlation = np.array((rho * size / (1 + size)) @ likely)
     memory = np.array([-1 / np.log(r) if r else 0.0 for r in rho])
-    remembered = np.array(memory @ likely)
+    shown = likely[1:] / _PRIOR.reshape(-1, 1)  # any memory being as likely beforehand
+    remembered = np.exp(np.log(memory[1:]) @ (shown / shown.sum(axis=0)))
     long = memory >= min(stations, memory.max())  # the longest stands for all that are longer
     lasts = likely[long].sum(axis=0) > _SURELY
     return NoiseFound(correlation, np.where(likely[0] > 0.5, 0.0, remembered), hum, lasts)

@@ -11,7 +11,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 
-_BY_CHANCE = 0.01  # probability of so much scatter; less is no chance
+_BY_CHANCE = 0.01  # probability of so much scatter, or of so little; less is no chance
 _HARDLY = 1e-3  # the same of passes that leave the same; of few the test is right to a factor of 6
 _FEWEST = 3  # passes; two do not show over how many places noise remembers
 ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
@@ -40,6 +40,11 @@ class Consistency:
     def consistent(self) -> bool:
         """Whether the passes may differ by noise alone."""
         return self.probability > _BY_CHANCE
+
+    @property
+    def too_alike(self) -> bool:
+        """Whether they differ by less than what was taken for noise makes them."""
+        return self.probability > 1 - _BY_CHANCE
 
     @property
     def leave_alike(self) -> bool:

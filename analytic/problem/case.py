@@ -1,9 +1,7 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
-import hashlib
-import json
 import math
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +13,14 @@ from analytic.problem.case_shown import described, draw, ways
 from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
+from analytic.problem.digest import digest_of
+from analytic.problem.ends import check_ends, first_contact, sign_of, start_of, stop_of
 from analytic.problem.errors import InputError, require
-from analytic.problem.limits import AnyCase
-from analytic.problem.numbers import pair, within
+from analytic.problem.limits import AnyCase, given_contour
+from analytic.problem.numbers import pair
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.provenance import recorded_contours
-from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
+from analytic.problem.reach import contact_range
 from analytic.problem.rest import FirstTouch, first_on_way, first_touch
 from analytic.problem.shown import Shown, new_figure
 from analytic.problem.support import Support, check_support, support_record
@@ -29,9 +29,6 @@ from analytic.problem.unloaded import Unloaded
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-_MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
-_SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,21 +94,7 @@ class Case(AnyCase, Shown):
             self._check_way()
             return
         touch = self._first_contact * self.beam.length
-        farthest = 2 * FARTHEST * self.beam.length
-        for name in ("start", "stop"):  # by default they are in order, and the stop is not needed
-            value = getattr(self.sweep, name)
-            if value is not None:
-                within(f"sweep.{name}", value, -farthest, farthest, "check its unit")
-        more = self._way > 0
-        if self._way * self._start > self._way * touch:
-            allowed = f"at {'most' if more else 'least'} {touch:.6g}, where the tip first touches"
-            remedy = "a sweep starts clear of the object"
-            raise InputError("sweep.start", self.sweep.start, allowed, remedy)
-        stop, shortest = self.sweep.stop, _SHORTEST * self.beam.length
-        if stop is not None and not self._way * (stop - self._start) > shortest:
-            allowed = f"{'more' if more else 'less'} than the start, {self._start:.6g}"
-            remedy = f"the foot moves to the {self.sweep.direction} (sweep.direction)"
-            raise InputError("sweep.stop", stop, allowed, remedy)
+        check_ends(self.sweep, self._start, touch, self.beam.length)
 
     def _put_in_order(self) -> None:
         """Make `profile` the object that is touched first, and `others` the rest."""
@@ -129,7 +112,7 @@ class Case(AnyCase, Shown):
     def _distance(self) -> float:
         """How far along its way the unloaded vibrissa first touches; infinite if it does not."""
         if isinstance(self.sweep, Sweep):
-            return self._way * self._first_contact
+            return sign_of(self.direction) * self._first_contact
         touch = (self if self.direction == "left" else self.mirrored()).touch
         return math.inf if touch is None else -touch.p
 
@@ -150,7 +133,7 @@ class Case(AnyCase, Shown):
     @cached_property
     def centreline(self) -> Contour:
         """The contour that the centreline feels, a cone's at its tip; in units of the length."""
-        return self.profile.scaled(1 / self.beam.length).offset(self.beam.unloaded.tip_radius)
+        return given_contour(self.profile, self.beam)
 
     def _check_way(self) -> None:
         """A way on which the clamp turns starts clear, and has all angles in it."""
@@ -266,7 +249,7 @@ class Case(AnyCase, Shown):
         InputError
             If the clamp turns or leaves its line on its way.
         """
-        sweep = self._require_line("a sweep between other positions of the foot")
+        sweep = self.require_line("a sweep between other positions of the foot")
         number = sweep.stations if stations is None else stations
         return replace(self, sweep=replace(sweep, stations=number, start=start, stop=stop))
 
@@ -305,31 +288,7 @@ class Case(AnyCase, Shown):
     @cached_property
     def digest(self) -> str:
         """A hash of the physics: equal for equal problems, whatever the case is called."""
-        left, right = self.reach
-        xi, eta = self.centreline.place(np.linspace(left, right, 67))
-        beam = self.beam
-        sizes = beam.length, beam.base_rigidity, beam.radius
-        if isinstance(self.sweep, Sweep):
-            ends = [self._start, self._stop, self.sweep.stations]
-        else:
-            ends = [value for values in self.stations for value in values.tolist()]
-        numbers = np.array([*sizes, *ends, *xi, *eta])
-        if not self.is_plain:
-            base_curvature = float(beam.curvature_at(0.0))
-            beyond = base_curvature, self.clamp_stiffness, self.friction
-            numbers = np.append(numbers, beyond)
-        if self.clamp_angle or any(self.weight):
-            numbers = np.append(numbers, self.clamp_angle)
-        if any(self.weight):
-            numbers = np.append(numbers, self.weight)
-        for other in self.alone:
-            numbers = np.append(numbers, other.centreline.place(np.linspace(*other.reach, 67)))
-        text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
-        if beam.varies:
-            given = asdict(beam)
-            names = "flexural_rigidity", "tip_radius", "natural_curvature"
-            text += json.dumps([given[name] for name in names])
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+        return digest_of(self)
 
     def provenance(self) -> dict[str, Any]:
         """What every engine records of the problem that it solved.
@@ -424,43 +383,14 @@ class Case(AnyCase, Shown):
             "stations": ways(self),
         }
 
-    @property
-    def _way(self) -> int:
-        """The sign of the foot's motion along x."""
-        return 1 if self.sweep.direction == "right" else -1
-
-    @cached_property
-    def _leftward(self) -> tuple[Contour, tuple[float, float]]:
-        """Contour and reach of the sweep to the left that this one is, or mirrors."""
-        if self._way < 0:
-            return self.centreline, self.reach
-        mirrored = self.centreline.mirrored()
-        return mirrored, contact_range(mirrored)
-
     @cached_property
     def _first_contact(self) -> float:
-        if self.beam.varies or self.unloaded.most_turned:
-            held, beam = self.support, self.beam
-            if self._way > 0:
-                held, beam = held.mirrored(), beam.mirrored()
-            return -self._way * first_touch(*self._leftward, held.at_rest(beam).shape).p
-        first = self.reach[0 if self._way > 0 else 1]
-        return float(self.centreline.place(np.array([first]))[0][0])
+        return first_contact(self)
 
     @cached_property
     def _start(self) -> float:
-        start = self._require_line("a foot position to start from").start
-        if start is not None:
-            return start
-        return (self._first_contact - self._way * _MARGIN) * self.beam.length
+        return start_of(self, self._first_contact)
 
     @cached_property
     def _stop(self) -> float:
-        stop = self._require_line("a foot position to stop at").stop
-        if stop is not None:
-            return stop
-        if self.others:
-            alone = [replace(self, others=()), *self.alone]
-            return max((one._stop for one in alone), key=lambda stop: self._way * stop)
-        contour, reach = self._leftward
-        return self._way * (_MARGIN - out_of_reach(contour, *reach)) * self.beam.length
+        return stop_of(self)

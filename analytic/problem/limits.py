@@ -3,7 +3,7 @@
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.clamp_path import ClampWay, Sweep
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.support import (
     Support,
     beyond_the_paper,
@@ -12,6 +12,13 @@ from analytic.problem.support import (
     require_plain,
     require_weightless,
 )
+
+
+def given_contour(profile: Contour, beam: Beam) -> Contour:
+    """What the centreline feels, a cone's at its tip, in units of the vibrissa's length."""
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    return profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
 
 
 class OfVibrissa:
@@ -59,7 +66,7 @@ class AnyCase(OfVibrissa):
     def require_sweep(self, who: str) -> Sweep:
         """Refuse several objects, and a clamp that turns or leaves its line on its way."""
         self.require_one_object(who)
-        return self._require_line(who)
+        return self.require_line(who)
 
     def require_one_object(self, who: str) -> None:
         if self.others:
@@ -67,7 +74,8 @@ class AnyCase(OfVibrissa):
             remedy = "solve it in closed form (exact), sweep MuJoCo in motion, or sweep past one"
             raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
 
-    def _require_line(self, who: str) -> Sweep:
+    def require_line(self, who: str) -> Sweep:
+        """Refuse a clamp that turns or leaves its line on its way."""
         if not isinstance(self.sweep, Sweep):
             what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
             allowed = f"a Sweep, with the foot along its line: {who} can do no other"

@@ -15,7 +15,7 @@ from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.simulate.budgets import measure_budget
 from compare.simulate.dispatch import simulate
-from compare.simulate.target import Fastest, Followed, find_fastest, follow_advice
+from compare.simulate.target import NAIVE, Fastest, Followed, find_fastest, follow_advice
 
 
 @dataclass(frozen=True)
@@ -95,4 +95,8 @@ def _advised(advice: Followed) -> list[str]:
         f"  predicted: {advice.predicted:.1e} rms",
         f"  measured: {advice.error:.1e} rms, {took:.1f} ms a station",
     ]
-    return said if advice.reached else [*said, "  The target was missed: ask for a little less."]
+    if settings.clamp == "naive":
+        said.append(f"  For far fewer segments {NAIVE}.")
+    if not advice.reached:
+        said.append("  The target was missed: ask for a little less.")
+    return said

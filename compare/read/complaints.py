@@ -46,6 +46,9 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
             allowed, remedy = f"one of {known}" if known else "given", "say what it is"
             remedy = near(context.get("tag", ""), re.findall("[a-z-]+", known), remedy)
             return InputError(f"{name}.kind", tag, allowed, remedy)
+        case "too_long" | "too_short" if context["field_type"] == "Tuple":
+            (count,) = (context[end] for end in ("max_length", "min_length") if end in context)
+            return InputError(name, value, f"a list of {count}", "change it")
         case "model_type" | "dataclass_type":
             return InputError(name, value, "a table", "write its keys below its name in brackets")
         case "value_error":

@@ -167,8 +167,8 @@ class CaseFile(Table):
             raise InputError("[sweep] beside [whisk]", "both", "one of them", "leave one out")
         return self.whisk.build()
 
-    def case(self, folder: Path, name: str, others: Sequence["CaseFile"] = ()) -> Case:
-        """The whole problem; with the objects of other files that are like this one."""
+    def case(self, folder: Path, name: str, others: Sequence[Contour] = ()) -> Case:
+        """The whole problem, with more objects."""
         beam, contour, held = self.physics(folder)
         try:
             return Case(
@@ -176,7 +176,7 @@ class CaseFile(Table):
                 contour,
                 self.way(),
                 self.name or name,
-                others=tuple(other.profile.build(folder) for other in others),
+                others=tuple(others),
                 **held._asdict(),
             )
         except InputError as error:
@@ -206,13 +206,14 @@ class BeamFile(Table):
 
 
 def job_in_the_plane(file: TomlFile) -> Job:
-    given = file.tables.get("profile")
-    each = [file.tables]
-    if isinstance(given, list) and given:  # several objects, [[profile]]
-        each = [{**file.tables, "profile": one} for one in given]
-    found, *others = (validated(CaseFile, tables, file.place) for tables in each)
-    with file.naming():
-        case = found.case(file.path.parent, found.name or name_of(file.path), others)
+    folder, each = file.path.parent, file.each("profile")  # several objects, [[profile]]
+    found, *more = (validated(CaseFile, one.tables, one.place) for one in each)
+    others = []
+    for one, other in zip(each[1:], more, strict=True):
+        with one.naming():
+            others.append(other.profile.build(folder))
+    with each[0].naming():
+        case = found.case(folder, found.name or name_of(file.path), others)
     moved, own = found.motion, found.model
     motion = None if moved is None else moved.build(case.beam)
     if own is not None:
@@ -223,7 +224,7 @@ def job_in_the_plane(file: TomlFile) -> Job:
         tolerances_of(found.tolerances, file.place, Tolerances),
         motion,
         uncertainties_of(found.uncertainty, case, file.place),
-        None if own is None else own.build(file.path.parent),
+        None if own is None else own.build(folder),
         engines_beside_exact(found.engine.name),
         found.engine.timeout,
     )

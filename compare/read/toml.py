@@ -4,7 +4,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -26,6 +26,8 @@ class TomlFile:
     path: Path  # where it is
     text: str  # what is in it
     tables: dict[str, Any]  # the same, parsed
+    # Of which of several tables of a name `tables` has only this one: their name, and its number.
+    one_of: tuple[str, int] | None = None
 
     @classmethod
     def read(cls, path: Path, what: str) -> "TomlFile":
@@ -50,6 +52,16 @@ class TomlFile:
             raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
         return cls(path, text, tables)
 
+    def each(self, name: str) -> "list[TomlFile]":
+        """The file once for each table of a name, as if it had no other one of that name."""
+        given = self.tables.get(name)
+        if not isinstance(given, list) or not given:
+            return [self]
+        return [
+            replace(self, tables={**self.tables, name: one}, one_of=(name, number))
+            for number, one in enumerate(given)
+        ]
+
     def table(self, name: str) -> Any:  # noqa: ANN401  # whatever it is
         if name not in self.tables:
             raise InputError(f"{self.path}: [{name}]", "missing", "given", "add the table")
@@ -70,7 +82,7 @@ class TomlFile:
         except InputError as error:
             table, _, key = error.name.partition("[")[0].partition(".")
             stated = self.tables.get(table)
-            if not isinstance(stated, dict):  # of several of a name nobody says which
+            if not isinstance(stated, dict):
                 raise
             unit = " in SI units" if _WITH_UNIT.match(str(stated.get(key))) else ""
             raise error.called(self.place([table, key]) + unit) from error
@@ -78,18 +90,21 @@ class TomlFile:
     def _line(self, keys: Sequence[str]) -> int | None:
         """The line that states a key: the last one with its name before which there is none."""
         lines = self.text.split("\n")
+        name, number = self.one_of or ("", 0)
+        in_file: list[str | int] = [keys[0], *([number] if keys[0] == name else []), *keys[1:]]
         named = re.compile(rf"\b{re.escape(keys[-1])}\b[\"']?\s*[.=\]]")
-        found = [number for number, line in enumerate(lines) if named.search(line)]
-        for number in reversed(found[:_LOOKED_AT] if _holds(self.tables, keys) else []):
+        found = [at for at, line in enumerate(lines) if named.search(line)]
+        for at in reversed(found[:_LOOKED_AT] if _holds(self.tables, keys) else []):
             with suppress(ValueError):  # amid a value of several lines
-                if not _holds(tomllib.loads("\n".join(lines[:number])), keys):
-                    return number + 1
+                if not _holds(tomllib.loads("\n".join(lines[:at])), in_file):
+                    return at + 1
         return None
 
 
-def _holds(tables: object, keys: Sequence[str]) -> bool:
+def _holds(tables: Any, keys: Sequence[str | int]) -> bool:  # noqa: ANN401  # whatever there is
     for key in keys:
-        if not isinstance(tables, dict) or key not in tables:
+        try:
+            tables = tables[key]
+        except (KeyError, IndexError, TypeError):
             return False
-        tables = tables[key]
     return True

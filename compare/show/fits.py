@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from analytic import CLAMP_READINGS, Beam, Calibration, FittedObject
+from analytic.from_clamp.calibration.best import below_the_noise
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.unknowns import LAG, OF_THE_FOOT
 from analytic.from_clamp.passes import Consistency
@@ -181,3 +182,14 @@ def _left(found: Calibration | FittedObject | FittedBody) -> Iterator[Text]:
     yield Text(f"the fit leaves {found.misfit:.2g} times the noise")
     names = COMPONENTS if isinstance(found, FittedBody) else CLAMP_READINGS
     yield from map(Text, found.noise.said(names))
+    if below_the_noise(found.misfit, len(names) * found.stations):
+        yield Text(
+            "the noise is less than it was taken for: state less, the intervals are too wide"
+        )
+    passes = None if isinstance(found, FittedBody) else found.passes
+    held = passes is not None and passes.alike is not None
+    if found.explains and found.noise.remembers.any() and not held:
+        yield Text(
+            "one pass, or two, do not distinguish noise that remembers from what is not as stated: "
+            "three the same way do"
+        )

@@ -23,6 +23,7 @@ _SEGMENTS, _POINTS = (5, 1000), (100, 25_600)
 _TRIES = 8
 _CHATTER = 0.1  # fraction of the stations in contact; what is left of such a sweep says little
 _NEAR = 1.1  # a speed that is known to within a tenth is good enough
+NAIVE = 'leave clamp = "naive" out: its error falls in first order, that of the default in second'
 _SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
 
 
@@ -86,7 +87,7 @@ def advised(found: Budget, runs: Mapping[str, Readings], target: float) -> tuple
     error = math.hypot(rest, bent, cut)
     if error > target:
         least = f"at least {error / _FRACTION:.1e}, the smallest that this budget can predict"
-        remedy = "begin with a finer run: more --segments, whose budget is surer"
+        remedy = NAIVE if base.clamp == "naive" else "begin with a finer run: more --segments"
         raise InputError("--target", target, least, remedy)
     chosen = replace(base, segments=segments, contour_points=points, contact_stiffness=stiffness)
     return chosen, error

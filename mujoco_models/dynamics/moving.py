@@ -10,8 +10,8 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
-from mujoco_models.model.warned import has_diverged
 from mujoco_models.motion import Motion
+from mujoco_models.quiet import has_diverged
 
 # (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
 # which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.

@@ -194,7 +194,8 @@ def _normal(held: Held, hinges: Floats, y: Floats) -> Floats:
     found = hinges[np.abs(hinges @ y) < _ACROSS] if len(hinges) else hinges
     if not len(found) and np.abs(y).max() < _WORLD:
         sites = (held.site(s)[1].T for s in (held.parts.force, held.parts.torque) if s is not None)
-        found = next((site for site in sites if np.abs(site @ y).max() > 1 - _ACROSS), found)
+        along = ((site, np.abs(site @ y)) for site in sites)
+        found = next((site[on < _ACROSS] for site, on in along if on.max() > 1 - _ACROSS), found)
     return np.asarray(found[int(np.argmax(np.abs(found @ usual)))]) if len(found) else usual
 
 

@@ -1,5 +1,6 @@
 """Clamp readings past a circle by SciPy's boundary-value solver, which shares nothing with ours."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -70,7 +71,10 @@ def circle_sweep(stations=240, radius=RADIUS, centre=CENTRE, angle=0.0):
 
 
 def one_pass(rng, rows, noise, sweep, zero=0.0, jitter=0.0, free=0.2):
-    """Readings at even stations, with noise relative to the largest magnitudes."""
+    """Readings at even stations, with noise relative to the largest magnitudes.
+
+    What their zeros are known to is handed on, as a rig's free stretches say it.
+    """
     foot = np.linspace(sweep[0, 0] + free, sweep[0, -1] - free, rows)
     there = foot + jitter / BEAM.length * rng.standard_normal(rows)
     inside = (there < sweep[0, 0]) & (there > sweep[0, -1])
@@ -81,4 +85,8 @@ def one_pass(rng, rows, noise, sweep, zero=0.0, jitter=0.0, free=0.2):
     )
     columns = dict(zip(("foot_x", "force_x", "force_y", "moment_z"), [foot, *noisy], strict=True))
     scale = units(BEAM, tuple(columns))
-    return Readings.of({n: x * u for (n, x), u in zip(columns.items(), scale, strict=True)}, BEAM)
+    known = dict(zip(list(columns)[1:], (zero * size[:, 0] * scale[1:]).tolist(), strict=True))
+    readings = Readings.of(
+        {n: x * u for (n, x), u in zip(columns.items(), scale, strict=True)}, BEAM
+    )
+    return replace(readings, provenance={**readings.provenance, "zero_uncertainty": known})

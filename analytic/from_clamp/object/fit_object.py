@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.from_clamp.calibration.calibrate import (
-    Estimate,
-    explained_by_noise,
-    fitted_to_noise,
-)
+from analytic.from_clamp.calibration.best import explained_by_noise, fitted_to_noise
+from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, Unknown

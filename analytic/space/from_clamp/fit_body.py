@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from analytic.from_clamp.calibration.calibrate import Estimate, explained_by_noise
+from analytic.from_clamp.calibration.best import explained_by_noise
+from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.contact import LONGEST
 from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest

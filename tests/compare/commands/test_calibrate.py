@@ -3,11 +3,14 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from analytic import SENSED, Case, Readings, Sweep, circle, relative_noise, solve_sweep
+from analytic import SENSED, Case, Readings, Sweep, calibrate, circle, relative_noise, solve_sweep
+from compare.show.fits import calibration_summary
 from tests.analytic.noisy import noisy
 from tests.compare.command import vibrissa
 
@@ -45,6 +48,46 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     written = json.loads((tmp_path / "found" / "calibration.json").read_text())
     assert written["found"]["clamp_stiffness"]["value"] == pytest.approx(8.0)
     assert written["stations"] > 30
+
+
+STRAIGHT = Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(60))
+
+
+def said_of(count, noise, stated):
+    """Lines of a calibration from passes with noise, known to be of another size."""
+    exact, rng = solve_sweep(STRAIGHT), np.random.default_rng(2)
+    size = relative_noise(exact, 0.01)
+    passes = []
+    for _ in range(count):
+        columns = {n: exact.values(n) + x * noise(rng, 60) for n, x in size.items()}
+        passes.append(replace(exact, table=exact.table.assign(**columns)))
+    known = {name: stated * x for name, x in size.items()}
+    return " ".join(str(x) for x in calibration_summary(calibrate(passes, STRAIGHT, noise=known)))
+
+
+def white(rng, n):
+    return rng.standard_normal(n)
+
+
+def remembers(rng, n):
+    return lfilter([1], [1, -0.9], rng.standard_normal(n + 99) * np.sqrt(0.19))[99:]
+
+
+def test_noise_that_is_stated_too_large_is_said():
+    """Of five times the noise passes had p = 1 and "say the same", and no word of it."""
+    found = said_of(8, white, 5)
+    assert "one of these is stated too large" in found
+    assert "the noise is less than it was taken for" in found
+    right = said_of(3, white, 1)
+    assert "3 passes say the same" in right
+    assert "less than" not in right
+
+
+@pytest.mark.parametrize(("count", "said"), [(1, True), (2, True), (3, False)])
+def test_what_one_pass_does_not_distinguish_is_said(count, said):
+    """A circle 3 % off under noise that remembers was called right, of one pass, without a word."""
+    assert ("do not distinguish noise that remembers" in said_of(count, remembers, 1)) == said
+    assert "do not distinguish" not in said_of(count, white, 1)
 
 
 @pytest.mark.slow

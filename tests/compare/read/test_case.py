@@ -31,6 +31,27 @@ TABLED = UNITED.replace('"2e-6 N m^2"', '[["0 mm", "2 N mm^2"], ["50 mm", "1e-6 
 
 
 @pytest.mark.parametrize(
+    ("said", "instead", "line"),
+    [
+        ("radius = 1.0", "radius = -1.0", 7),
+        ("radius = 1.0", "radios = 1.0", 7),
+        ("radius = 1.0", 'radius = "20 kg"', 7),
+        ("lowest = [0.0, 0.4]", 'lowest = "up"', 8),
+        ("lowest = [0.0, 0.4]", "lowest = [0.0, 0.4, 1.0]", 8),
+    ],
+)
+def test_what_is_wrong_in_one_of_several_objects_is_named_by_its_line(
+    said, instead, line, tmp_path
+):
+    """That of the first object was named, or none."""
+    path = tmp_path / "two.toml"
+    objects = [CIRCLE, CIRCLE.replace(said, instead)]
+    path.write_text("".join(objects).replace("[profile]", "[[profile]]"))
+    with pytest.raises(InputError, match=f"two.toml, line {line}: profile"):
+        load_job(path)
+
+
+@pytest.mark.parametrize(
     ("extra", "said"),
     [
         ("[beam]\nlength = true\n", "line 6: beam.length = True"),

@@ -1,7 +1,7 @@
 """Settings for a wanted error, from parts that are known."""
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import pytest
@@ -14,7 +14,7 @@ from mujoco_models import Settings
 BASE = Settings(segments=40, contour_points=1000, contact_stiffness=1e6)
 
 
-def chosen(target, smooth="primitive", **sizes):
+def chosen(target, smooth="primitive", base=BASE, **sizes):
     """What is advised where each part has that size in the worst of the readings."""
     zero = dict.fromkeys(("discretisation", "facets", "softness", "unexplained"), 0.0)
     worst = dict(zip(CLAMP_READINGS, (1.0, 0.5, 0.2), strict=True))
@@ -22,7 +22,7 @@ def chosen(target, smooth="primitive", **sizes):
         name: {reading: Part(size * share, 0.0) for reading, share in worst.items()}
         for name, size in (zero | sizes).items()
     }
-    swept = {"base": asdict(BASE), "smooth": asdict(BASE) | {"obstacle": smooth}}
+    swept = {"base": asdict(base), "smooth": asdict(base) | {"obstacle": smooth}}
     runs = {name: SimpleNamespace(provenance={"settings": of}) for name, of in swept.items()}
     return advised(SimpleNamespace(parts=parts, order=2.0), runs, target)
 
@@ -57,3 +57,9 @@ def test_contacts_become_as_stiff_as_they_must():
 def test_what_nothing_lowers_is_the_least(part):
     with pytest.raises(InputError, match=r"must be at least"):
         chosen(1e-3, **{part: 2e-3})
+
+
+def test_a_clamp_of_first_order_is_advised_against_first():
+    """More segments were, where no number of them would do."""
+    with pytest.raises(InputError, match='leave clamp = "naive" out'):
+        chosen(1e-5, base=replace(BASE, clamp="naive"), discretisation=0.1)

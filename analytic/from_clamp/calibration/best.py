@@ -1,0 +1,170 @@
+"""The numbers that fit readings best, for the noise that these show."""
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from analytic.from_clamp.calibration.fit import LeastSquaresFit
+from analytic.from_clamp.calibration.measured import Measured
+from analytic.from_clamp.calibration.unknowns import LAG, OFFSET
+from analytic.from_clamp.correlated import Estimated, estimate
+from analytic.from_clamp.jitter import foot_jitter
+from analytic.from_clamp.passes import ROUNDING, alike_by_chance
+from analytic.problem.arrays import Floats
+from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.errors import InputError
+
+AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
+
+_NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
+_ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
+_NOISE_KNOWN_TO = 1.1  # times what is stated
+_CHANCE = 3.0  # standard deviations of a misfit, which is 1 +- 1/sqrt(2 n)
+_SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
+_STARTS = 3
+_ENOUGH = 4000  # stations of which a fit is sought
+_REFINED = 2  # steps from plain least squares to those that know the noise
+_NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
+
+
+def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
+    """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
+    fit, numbers, cost = _fitted(fit)
+    jittered = _with_jitter(fit, numbers) if cost > ROUNDING**2 * fit.freedom else None
+    if jittered is not None:
+        fit = fit.of(jittered)
+    first = numbers
+    numbers, known, relief = _knowing_the_noise(
+        fit, numbers, 1.0 if stated and not jittered else 0.0
+    )
+    if relief and jittered is not None:
+        cost = float(np.sum(fit.misses(first) ** 2))  # over that noise of which the relief is
+    return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / fit.freedom)), known
+
+
+def explained_by_noise(misfit: float, freedom: int, vague: float = 0.0) -> bool:
+    """Whether what is left is no more than chance and the noise, known to a tenth, make of it.
+
+    And not much more than the noise, however vaguely that is known: `Measured.vague`.
+    """
+    chance = _CHANCE * np.sqrt(1 / freedom / 2)
+    more = _CHANCE * np.sqrt((1 / freedom + vague) / 2)
+    return bool(misfit <= _NOISE_KNOWN_TO + max(chance, min(more, _SATISFIED - _NOISE_KNOWN_TO)))
+
+
+def below_the_noise(misfit: float, freedom: int) -> bool:
+    """Whether what is left is less than the noise, known to a tenth, and chance would leave."""
+    return bool(misfit < 1 / _NOISE_KNOWN_TO - _CHANCE * np.sqrt(1 / freedom / 2))
+
+
+def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
+    """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
+    every = len(fit.measured.foot_x)
+    thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long
+    coarse = fit if thinned.all() else fit.of(fit.measured.at(thinned))
+    numbers, cost = _best(coarse)
+    if coarse is not fit:  # the steps that know the noise go on from here
+        cost = float(np.sum(fit.misses(numbers) ** 2))
+    for _ in range(_ROUNDS):
+        expected = fit.expected(numbers)
+        there = np.asarray(np.isfinite(expected).all(axis=0))
+        touching = int(np.any(expected[:, there] != 0, axis=0).sum())
+        if touching < (1 - _NOT_EXPLAINED) * every:
+            untouched = f"at {every - touching} of which the best fit does not touch"
+            what = f"loaded at {every} stations, {untouched}"
+            allowed = "of the case's vibrissa and object, but for the unknowns"
+            remedy = "check foot_x, units and object"
+            if all(kind.name != OFFSET for kind in fit.kinds):
+                remedy += ", or fit offset too"
+            if turned := fit.measured.turned:
+                remedy = (
+                    f"the moment of {turned} is that of a sweep to the other side than foot_x "
+                    "goes: reverse the rows, or change a sign"
+                )
+            raise InputError("readings", what, allowed, remedy)
+        if there.all():
+            break
+        fit = fit.of(fit.measured.at(there))
+        numbers, cost = fit.best_from(_inside(fit, numbers))
+    return fit, numbers, cost
+
+
+def _best(fit: LeastSquaresFit) -> tuple[Floats, float]:
+    """The best numbers from the case's own, or from elsewhere if those leave too much."""
+    starts, costs = fit.starts(), []
+    for i, start in enumerate(starts):
+        starts[i] = fit.scaled_rigidity(_inside(fit, start))
+        costs.append(float(np.sum(fit.misses(starts[i]) ** 2)))
+    enough = _SATISFIED**2 * fit.measured.readings.size
+    best, least = starts[0], np.inf
+    for at in np.argsort(costs)[:_STARTS].tolist():
+        numbers, cost = fit.best_from(starts[at])
+        if cost < least:
+            best, least = numbers, cost
+        if least < enough:
+            break
+    return best, least
+
+
+def _inside(fit: LeastSquaresFit, numbers: Floats) -> Floats:
+    return np.clip(numbers, fit.lowest, fit.highest)
+
+
+def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
+    """The stations with the jitter of the foot that what is left shows; None if it shows none."""
+    measured = fit.measured
+    foot, *sizes = measured.spread
+    if foot > 0:
+        return None
+    expected = fit.expected(numbers)
+    over = np.array(sizes)
+    left, slopes = expected - measured.readings, measured.slopes(expected)
+    jitter, own = foot_jitter(left.T / over, slopes.T / over, measured.rows)
+    own = np.maximum(own * over, measured.free)
+    return replace(measured, spread=np.array([jitter, *own])) if jitter else None
+
+
+def _knowing_the_noise(
+    fit: LeastSquaresFit, numbers: Floats, least: float
+) -> tuple[Floats, Estimated, float]:
+    """The numbers that are best for the noise that the readings show.
+
+    And by how much zeros and their drift, and hum beside a stated noise, lessen the sum of squares
+    that there was.
+    """
+    measured = fit.measured
+    curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
+    shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
+    along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
+    if len(measured.rows) > 1 or measured.bend.any():
+        shapes, uncertain = [*shapes, along], [measured.zero, measured.zero]
+    if measured.bend.any():
+        bent = 1 - along**2  # a curve of any shape: a wrong one is wrong in all passes alike
+        shapes += [bent, bent * along, bent**2, bent**2 * along]
+        uncertain += 4 * [np.maximum(measured.bend, _NO_BEND * measured.zero)]
+    nuisances = np.concatenate([x[:, None, None] * fit.whitening for x in shapes], axis=2)
+    shared = [i for i, kind in enumerate(fit.kinds) if kind.name == LAG]  # one pass shows none
+    known, relieved = np.concatenate(uncertain), []
+    for _ in range(_REFINED):
+        jacobian = fit.jacobian(numbers)
+        for kind, column in zip(fit.kinds, jacobian.T, strict=True):
+            if not column.any():
+                allowed = "something that the readings depend on"
+                raise InputError("unknowns", kind.called, allowed, "leave it out")
+        by_number = jacobian.reshape(-1, len(CLAMP_READINGS), len(numbers))
+        left = -fit.misses(numbers).reshape(-1, len(CLAMP_READINGS))
+        found = estimate(
+            left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
+        )
+        relieved.append(curved * found.relief + least * found.of_hum)
+        by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
+        moved = _inside(fit, numbers + found.numbers)
+        if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined
+            break
+        numbers = moved
+    straight, bent = np.split(nuisances, [2 * len(CLAMP_READINGS)], axis=2)
+    explained = np.concatenate([by_number, bent], axis=2) if curved else by_number
+    alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
+    found = replace(found, by_pass=by_pass, alike=alike)
+    return numbers, found, relieved[0]
