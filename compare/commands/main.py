@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable
+from functools import wraps
 from io import TextIOWrapper
 from traceback import format_exc
 from typing import Annotated, Any
@@ -82,10 +83,19 @@ COMMANDS: dict[str, tuple[Callable[..., bool], ...]] = {
 _NAMES = {list_what_there_is: "list"}
 
 
+def _with_exit_code(command: Callable[..., bool]) -> Callable[..., int]:
+    @ended_by_signals()
+    @wraps(command)
+    def ended(*given: Any, **named: Any) -> int:  # noqa: ANN401  # whatever the command takes
+        return AGREES if command(*given, **named) else DISAGREES
+
+    return ended
+
+
 for group, commands in COMMANDS.items():
     for command in commands:
         name = _NAMES.get(command, command.__name__)
-        app.command(name, rich_help_panel=group)(ended_by_signals()(command))
+        app.command(name, rich_help_panel=group)(_with_exit_code(command))
 
 
 def _show_version(asked: bool) -> None:
@@ -129,7 +139,7 @@ def _run() -> int:
         if not sys.argv[1:]:
             app(["--help"], standalone_mode=False)
             return BAD_INPUT
-        return DISAGREES if app(standalone_mode=False) is False else AGREES
+        return app(standalone_mode=False) or AGREES
     except (InputError, TyperException, OSError, ArithmeticError, MemoryError) as error:
         return _refuse(_in_words(error))
     except (typer.Abort, KeyboardInterrupt) as error:

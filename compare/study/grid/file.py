@@ -1,16 +1,18 @@
 """Study files: a case file with tables that say what varies and what is recorded."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from pydantic import ValidationError
 
 from analytic import NAMED_TABLES, InputError
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import unknown
 from compare.read.complaints import complaint, shown
 from compare.read.toml import TomlFile
@@ -21,18 +23,20 @@ from compare.study.grid.study import (
     RECORDS,
     RUN_TABLES,
     Axis,
-    Interval,
     PlanarRun,
     Range,
     SpatialRun,
     Study,
     StudyFile,
     Value,
+    between,
     checked_run,
     replaced,
 )
 from engines.known import named_engines
 
+Between: TypeAlias = Callable[[Floats], list[Value]]
+"""The values of a range at fractions of it."""
 _LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at a millisecond
 _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
 # Keys of what errors of a case name otherwise.
@@ -128,7 +132,7 @@ class _Base:
     def axes(self) -> tuple[Axis, ...]:
         """What the file says of its axes: lists, ranges with a count, samples of those without."""
         lists: list[dict[str, list[Value]]] = []
-        sampled: dict[str, Interval] = {}
+        sampled: dict[str, Between] = {}
         for key, value in self._items():
             self._check_key(key, _place(key))
             if isinstance(value, list):
@@ -138,11 +142,11 @@ class _Base:
                 span = Range.model_validate(value)
             except ValidationError as error:
                 raise complaint(error, self._file.place, _place(key)) from error
-            interval = self._interval(key, span)
+            values_at = self._between(key, span)
             if span.count is None:
-                sampled[key] = interval
+                sampled[key] = values_at
             else:
-                values = interval.at(np.linspace(0.0, 1.0, span.count))
+                values = values_at(np.linspace(0.0, 1.0, span.count))
                 lists.append({key: list(dict.fromkeys(values))})
         for keys in self._content.study.zip:
             lists = self._zipped(lists, keys)
@@ -198,8 +202,8 @@ class _Base:
             raise self._wrong(_place(key), given, allowed, "give a range with a count instead")
         return [self.tried(key, value, _place(key)) for value in values]
 
-    def _interval(self, key: str, span: Range) -> Interval:
-        """A range between two numbers."""
+    def _between(self, key: str, span: Range) -> Between:
+        """The values of a range between two numbers, in the units that the case ends up in."""
         ends = [self.tried(key, end, _place(key)) for end in (span.low, span.high)]
         numbers = [float(end) for end in ends if not isinstance(end, bool | str)]
         usable = len(numbers) == 2 and numbers[0] != numbers[1]
@@ -210,7 +214,7 @@ class _Base:
             allowed = "two different numbers, both positive if the spacing is log"
             raise self._wrong(_place(key), given, allowed, "correct the range")
         whole = all(isinstance(end, int) for end in ends)
-        return Interval(numbers[0], numbers[1], span.spacing == "log", whole)
+        return partial(between, numbers[0], numbers[1], span.spacing == "log", whole)
 
     def _zipped(
         self, lists: list[dict[str, list[Value]]], keys: list[str]
@@ -227,21 +231,21 @@ class _Base:
         rest = [group for group in lists if group not in chosen]
         return [*rest[:first], together, *rest[first:]]
 
-    def _sampled(self, intervals: Mapping[str, Interval]) -> list[Axis]:
+    def _sampled(self, ranges: Mapping[str, Between]) -> list[Axis]:
         """The one axis of all ranges without a count, if there are any."""
         sample = self._content.sample
-        if sample is None and intervals:
+        if sample is None and ranges:
             allowed = "a range without a count together with the table [sample]"
             remedy = "give the range a count, or the file a [sample] with one"
-            raise self._wrong(_place(next(iter(intervals))), "without a count", allowed, remedy)
+            raise self._wrong(_place(next(iter(ranges))), "without a count", allowed, remedy)
         if sample is None:
             return []
-        if not intervals:
+        if not ranges:
             allowed = "left out, or [sample] together with a range without a count"
             remedy = "take the count from the ranges to be sampled"
             raise self._wrong(["sample"], "given", allowed, remedy)
-        drawn = zip(intervals.items(), sample.draw(len(intervals)).T, strict=True)
-        return [Axis.of({key: interval.at(column) for (key, interval), column in drawn})]
+        drawn = zip(ranges.items(), sample.draw(len(ranges)).T, strict=True)
+        return [Axis.of({key: values_at(column) for (key, values_at), column in drawn})]
 
     def _check_key(self, key: str, place: Sequence[str]) -> None:
         table, *inner = key.split(".")

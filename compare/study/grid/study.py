@@ -48,25 +48,13 @@ class Sample(Table):
         return np.random.default_rng(self.seed).random((self.count, dimensions))
 
 
-@dataclass(frozen=True)
-class Interval:
-    """A range whose ends are numbers, in the units that the case ends up in."""
-
-    low: float  # the first value, and the last
-    high: float
-    log: bool  # whether equal ratios follow each other, rather than equal differences
-    whole: bool  # whether its values are whole numbers
-
-    def at(self, fraction: Floats) -> list[Value]:
-        """Take values between the ends."""
-        if self.log:
-            values = self.low * (self.high / self.low) ** fraction
-        else:
-            values = self.low + (self.high - self.low) * fraction
-        if self.whole:
-            return [int(value) for value in np.rint(values)]
-        # Twelve digits: what was written comes back as written, on every machine.
-        return [float(f"{value:.12g}") for value in values]
+def between(low: float, high: float, log: bool, whole: bool, fraction: Floats) -> list[Value]:
+    """Values of a range: at equal ratios if `log`, else at equal differences."""
+    values = low * (high / low) ** fraction if log else low + (high - low) * fraction
+    if whole:
+        return [int(value) for value in np.rint(values)]
+    # Twelve digits: what was written comes back as written, on every machine.
+    return [float(f"{value:.12g}") for value in values]
 
 
 @dataclass(frozen=True)
