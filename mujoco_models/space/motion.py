@@ -17,7 +17,6 @@ from analytic.problem.errors import InputError
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
-    FOOT,
     FORCE,
     FRICTION,
     MOMENT,
@@ -27,8 +26,7 @@ from analytic.space.problem.readings import (
 from analytic.space.problem.recorder import SpatialRecorder
 from mujoco_models.beams.kinds import build_spatial
 from mujoco_models.beams.links import link_name
-from mujoco_models.beams.protocol import FOOT as FOOT_BODY
-from mujoco_models.beams.protocol import SpatialBeam
+from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.dynamics.model import give_mass, set_options
 from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
 from mujoco_models.dynamics.record import StationMeans
@@ -73,7 +71,7 @@ class MovingSpace(SteppedModel):
         self._is_mine = np.isin(np.arange(model.ngeom), self._sides)
         self._is_object = np.arange(model.ngeom) == model.geom(GEOM).id
         self._start = before
-        self._foot, self._site = model.body(FOOT_BODY).id, model.site("clamp").id
+        self._foot, self._site = model.body(FOOT).id, model.site("clamp").id
         self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
         if motion.solref is not None:
             model.geom_solref[self._sides] = motion.solref
@@ -158,8 +156,7 @@ def run_space_motion(
     require_radius(case.beam.radius)
     motion = replace(motion, friction=case.friction if motion.friction is None else motion.friction)
     _check(case, motion, settings)
-    travel, length = case.path.travel, case.beam.length
-    record = StationMeans(-travel / length, motion.average, (*FORCE, *MOMENT))
+    record = StationMeans(-case.path.travel / case.beam.length, motion.average, (*FORCE, *MOMENT))
     model = MovingSpace(case, build_spatial(settings), settings, motion, start_of(record, motion))
     about = {
         "engine": engine(),
@@ -167,14 +164,13 @@ def run_space_motion(
         "motion": asdict(motion),
         "obstacle": model.label,
     }
-    places = {"travel": travel, **dict(zip(FOOT, case.path.at(travel).T, strict=True))}
     source = f"mujoco {settings.beam} in motion"
 
     def events() -> list[WalkEvent]:
         both = ("touch", record.contact.first), ("slip-off", record.contact.last)
         return [WalkEvent(kind, -at) for kind, at in both if at is not None]
 
-    recorder = SpatialRecorder(case, source, about, events, places, record.rows)
+    recorder = SpatialRecorder(case, source, about, events, record.rows)
     return Drive(model, motion).recorded(recorder, record, advance, keep)
 
 
@@ -197,7 +193,7 @@ def _assemble(
     """Sides that touch, sensors, and a carriage along the way."""
     for side in stand(spec, links, tangent):
         side.conaffinity = side.condim = side.priority = 1
-    foot = spec.body(FOOT_BODY)
+    foot = spec.body(FOOT)
     foot.pos = begin - before * onward
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, foot.quat)
