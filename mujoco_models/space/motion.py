@@ -62,20 +62,15 @@ class MovingSpace(SteppedModel):
         _assemble(spec, len(joints), case.path.clamp_tangent, begin, way.onward(0.0), before)
         give_mass(spec, beam.layout, motion)
         set_options(spec, motion)
-        implicit = motion.solref is None and motion.integrator == "discrete"
-        super().__init__(compiled(spec), shape.label, 1.0, follows_inertia=implicit)
+        super().__init__(compiled(spec), shape.label)
         model = self.model
         self._begins, self._ends = joints, np.append(joints[1:], 1.0)
         self._links = np.array([model.body(link_name(i)).id for i in range(len(joints))])
         self._sides = np.array([model.geom(f"side{i}").id for i in range(len(joints))])
-        self._is_mine = np.isin(np.arange(model.ngeom), self._sides)
         self._is_object = np.arange(model.ngeom) == model.geom(GEOM).id
         self._start = before
         self._foot, self._site = model.body(FOOT).id, model.site("clamp").id
-        self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
-        if motion.solref is not None:
-            model.geom_solref[self._sides] = motion.solref
-        self._rub(motion, self._sides)
+        self._set_contacts(motion, self._sides)
         mujoco.mj_forward(model, self.data)
 
     @property
@@ -96,28 +91,19 @@ class MovingSpace(SteppedModel):
     @property
     def touches(self) -> bool:
         """Whether a contact is loaded."""
-        return len(self._loaded()[1]) > 0
-
-    def _loaded(self) -> tuple[Any, Floats]:
-        """Which contacts carry force, and their forces along the normal and two sides."""
-        force = np.zeros(6)
-        which, found = [], []
-        for i in range(self.data.ncon):
-            mujoco.mj_contactForce(self.model, self.data, i, force)
-            if force[0] > 0:
-                which.append(i)
-                found.append(force[:3].copy())
-        return which, np.array(found).reshape(-1, 3)
+        return bool((self._forces(range(self.data.ncon))[:, 0] > 0).any())
 
     def state(self, speed: float) -> dict[str, Any]:
         """Contact of the last step, dimensionless: of several the mean by their forces."""
-        which, forces = self._loaded()
+        forces = self._forces(range(self.data.ncon))
+        which = np.flatnonzero(forces[:, 0] > 0)
         names = (*CONTACT_POINT, *NORMAL, *FRICTION, "contact_arc_length", "penetration")
         row: dict[str, Any] = dict.fromkeys(names, np.nan)
         row |= {"phase": "free", "status": "ok"}
-        if not which:
+        if not len(which):
             return row
-        contact, weights = self.data.contact, forces[:, 0] / forces[:, 0].sum()
+        contact, forces = self.data.contact, forces[which]
+        weights = forces[:, 0] / forces[:, 0].sum()
         frames = contact.frame[which].reshape(-1, 3, 3)
         mine = self._is_mine[contact.geom[which, 1]]
         frames = np.where(mine[:, None, None], frames, -frames)  # from the body to the vibrissa
