@@ -43,7 +43,7 @@ from .problem.named import WHISK_CASE_NAMES as WHISK_CASE_NAMES
 from .problem.named import named_case as named_case
 from .problem.readings import Readings as Readings
 from .solver.contact import solve_contact as solve_contact
-from .solver.contact_length import surplus as surplus
+from .solver.equilibria import surplus as surplus
 from .solver.events import Event as Event
 from .solver.events import Events as Events
 from .solver.events import find_events as find_events

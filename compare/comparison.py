@@ -72,12 +72,16 @@ class Comparison(Judged[Readings], Measurement):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What is to be known of both sweeps, and how well jumps of the contact are."""
-        jumped, (size, unit) = self.alignment.counts["beside_jump"], self.reference.running_unit
-        if not jumped:
-            return super().remarks
+        counts, (size, unit) = self.alignment.counts, self.reference.running_unit
         step = float(np.abs(np.diff(self.reference.running_values)).max()) / size
-        said = "note: stations beside a jump of the contact, whose place is known to "
-        return (*super().remarks, f"{said}{step:.2g} {unit}, are not compared: {jumped}")
+        said = {
+            "beside_jump": "note: stations beside a jump of the contact, whose place is known to "
+            f"{step:.2g} {unit}, are not compared: {counts['beside_jump']}",
+            "reference_coarse": "note: stations between those of the reference, which are too far "
+            f"apart to say what is there, are not compared: {counts['reference_coarse']}; "
+            f"sweep the reference in smaller steps than {step:.2g} {unit}",
+        }
+        return (*super().remarks, *(text for name, text in said.items() if counts[name]))
 
     def validated(
         self,
@@ -109,15 +113,8 @@ class Comparison(Judged[Readings], Measurement):
         if self.offset.uncertainty > 0:
             fitted = Input(self.offset.uncertainty / _OF_95)
             stated = replace(stated, inputs={**stated.inputs, "foot_x": fitted})
-        found = validate(
-            self,
-            case,
-            stated,
-            simulation=simulation,
-            budget=budget,
-            noise=self.noise,
-            window=self.tolerances.snap_off_window,
-        )
+        by: dict[str, Any] = {"noise": self.noise, "window": self.tolerances.snap_off_window}
+        found = validate(self, case, stated, simulation=simulation, budget=budget, **by)
         return replace(self, validation=found)
 
     def _failures(self) -> Iterator[Failure]:

@@ -5,11 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from analytic.problem.files import write_whole
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.read.run_folder import read_run
 from compare.show.document import Film
-from compare.show.html import html
+from compare.show.page import html, write_all
 from compare.show.report import write_report as write_page
 from compare.show.runs import runs_document
 from compare.study.show.study_report import write_report as write_study_report
@@ -60,14 +59,8 @@ def write_report(
     place = folder if out is None else out
     if (folder / "study.json").exists():
         return Report(write_study_report(folder, warn, place))
-    if any(folder.glob("*.parquet")):
-        return _of_a_run(folder, place)
-    page = html(runs_document(folder))
-    place.mkdir(parents=True, exist_ok=True)
-    return Report(write_whole(place / "report.html", page))
-
-
-def _of_a_run(folder: Path, place: Path) -> Report:
+    if not any(folder.glob("*.parquet")):
+        return Report(write_all(place, {"report.html": html(runs_document(folder))})[-1])
     stored, film = read_run(folder), Film.of(folder)
     found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
     if isinstance(found, Comparison):

@@ -9,11 +9,11 @@ GROUP = "vibrissa.engines"
 """The entry points by which other distributions offer engines: ``name = "module:ENGINE"``."""
 _SHIPPED = {
     "mujoco": "engines.mujoco:ENGINE",
-    "drake": "engines.drake.engine:ENGINE",
-    "exudyn": "engines.exudyn.engine:ENGINE",
-    "pinocchio": "engines.pinocchio.engine:ENGINE",
-    "dart": "engines.dart.engine:ENGINE",
-    "pyelastica": "engines.pyelastica.engine:ENGINE",
+    "drake": "engines.shipped:DRAKE",
+    "exudyn": "engines.shipped:EXUDYN",
+    "pinocchio": "engines.shipped:PINOCCHIO",
+    "dart": "engines.shipped:DART",
+    "pyelastica": "engines.shipped:PYELASTICA",
 }
 
 _LISTED = "`vibrissa list engines` lists them"

@@ -13,7 +13,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.mirror import facing, leftward
@@ -25,6 +25,7 @@ from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout
 from mujoco_models.model.surface import CONTACT_GAP
@@ -88,7 +89,7 @@ def sweep_twin(
     return facing(case, follow(swept, walk, f"{name} chain", about, begun, advance))
 
 
-class Twin:
+class Twin(Balance):
     """See `mujoco_models.model.balance.Balance`."""
 
     def __init__(
@@ -99,7 +100,7 @@ class Twin:
         obstacle: Obstacle,
         contact_stiffness: float,
     ) -> None:
-        self.layout, self.obstacle, self._beam, self._radius = beam.layout, obstacle, beam, radius
+        self.layout, self.obstacle, self._beam, self.radius = beam.layout, obstacle, beam, radius
         self.contact_stiffness, self.evaluations = contact_stiffness, 0
         self.radii = radius * self.layout.vibrissa.thickness(self.layout.beads)
         self._linkage = make(beam, self.radii, obstacle, contact_stiffness)
@@ -123,7 +124,7 @@ class Twin:
             raise DivergedError("the joint angles are not finite")
         self.pose, self.evaluations = pose, self.evaluations + 1
         self._joints, self._places = self._linkage.place(float(pose.foot_x), angles)
-        near = self.obstacle.near(self._places, self._radius + CONTACT_GAP).tolist()
+        near = self.obstacle.near(self._places, self.radius + CONTACT_GAP).tolist()
         self._contacts = self._at_beads([i for i in near if i in self._watched])
         loaded = self._contacts.loaded
         beads, self._forces = self._contacts.touch[loaded], self._push()[loaded]
@@ -167,11 +168,6 @@ class Twin:
         depth = self.radii[found.touch] + found.distance / 2
         return np.asarray(found.point - depth[:, None] * found.normal)
 
-    def contact_curvature(self, slope: Floats) -> Floats:
-        """That of the contour, farther out by the radius."""
-        curvature = self.obstacle.curvature(slope)
-        return np.asarray(curvature / (1 + self._radius * curvature))
-
     def stiffness(self, angles: Floats) -> Floats:
         return self._beam.stiffness(angles)
 
@@ -183,16 +179,6 @@ class Twin:
 
     def bead_positions(self, beads: Integers) -> Floats:
         return np.asarray(self._places[beads])
-
-    def slide_beads(self, contacts: Contacts) -> bool:
-        """Never; where they had to, there is no such chain."""
-        return False
-
-    def hold_beads(self) -> bool:
-        return False
-
-    def slides(self, contacts: Contacts) -> Booleans:
-        return np.zeros(len(contacts.link), dtype=bool)
 
     def clamp(self) -> clamp.Clamp:
         return self._linkage.clamp()

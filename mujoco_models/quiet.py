@@ -7,6 +7,15 @@ import mujoco
 
 from analytic.problem.errors import InputError
 
+_BAD_STATES = [
+    int(bad)
+    for bad in (
+        mujoco.mjtWarning.mjWARN_BADQPOS,
+        mujoco.mjtWarning.mjWARN_BADQVEL,
+        mujoco.mjtWarning.mjWARN_BADQACC,
+    )
+]
+
 
 @contextmanager
 def unlogged() -> Iterator[None]:
@@ -26,3 +35,8 @@ def unlogged() -> Iterator[None]:
         ) from refused  # fmt: skip
     finally:
         mujoco.set_mju_user_warning(before)
+
+
+def has_diverged(data: mujoco.MjData) -> bool:
+    """Whether a state has not been finite; MuJoCo only warns, and sets it back."""
+    return bool(data.warning.number.take(_BAD_STATES).any())

@@ -1,7 +1,6 @@
 """Zeros between bounds, many at a time, to the last digit."""
 
 from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -9,43 +8,27 @@ from numpy.polynomial.chebyshev import chebvander
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 
-_MAX_ITERATIONS = 120  # bisection alone needs 53, and 64 more to pass from 1 to 1e-19
-_ROUNDING = 2 * float(np.finfo(float).eps)  # of a zero, relative
+_ROUNDING = 4 * float(np.finfo(float).eps)  # of a zero, relative
+_LEAST = 1e-300  # a zero of less is none
 _NODES = np.cos(np.pi * (np.arange(13) + 0.5) / 13)  # of a polynomial's, about a likely place
 _EACH = np.arange(_NODES.size)
 _TO_CHEBYSHEV = chebvander(_NODES, _NODES.size - 1).T * np.where(_EACH > 0, 2, 1)[:, None] / 13
 _NEAR = 0.1  # of the width between the bounds: up to so far from that place
 _AGREED = 1e-13  # of that width: polynomials of one degree less and of this one agree
-_AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
 
 
 def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Floats) -> Floats:
-    """Where `function` changes its sign, or jumps (Chandrupatla, Adv. Eng. Software 28, 1997)."""
-    low, high = np.array(low, dtype=float), np.array(high, dtype=float)
+    """Where `function` changes its sign, or jumps, to the last digit; `high` where it does not."""
     if not low.size:
         return low
-    found, which = np.empty_like(low), np.arange(low.size)
-    even = _even(_pairs(which.size))
-    x = low[:, None] + even * (high - low)[:, None]
-    x[:, -1] = high
-    f = _values(function, which, x)
-    for _ in range(_MAX_ITERATIONS):
-        a, b, c, f_a, f_b, f_c = _narrowed(x, f)
-        width = np.abs(b - a)
-        nearest = np.where(np.abs(f_a) < np.abs(f_b), a, b)
-        rounding = _ROUNDING * np.abs(nearest)
-        going = (width > 2 * rounding) & (f_a != 0) & (f_b != 0)
-        found[which] = nearest
-        if not going.any():
-            break
-        a, b, c, f_a, f_b, f_c = (values[going] for values in (a, b, c, f_a, f_b, f_c))
-        which, margin = which[going], np.minimum(rounding[going] / width[going], 0.5)
-        share, smooth = _share(a, b, c, f_a, f_b, f_c)
-        inside = _spread(np.clip(share, margin, 1 - margin), margin, smooth, _pairs(which.size))
-        x = a[:, None] + inside * (b - a)[:, None]
-        f = _values(function, which, x)
-        x, f = _between(a, x, b), _between(f_a, f, f_b)
-    return found
+    from scipy.optimize.elementwise import find_root  # slow to load, and many need none
+
+    def value(x: Floats, which: Floats) -> Floats:
+        return function(which.astype(int), x)
+
+    bounds, each = (low, high), (np.arange(low.size),)
+    found = find_root(value, bounds, args=each)
+    return np.where(found.success, found.x, high)
 
 
 def smooth_zeros(
@@ -106,65 +89,14 @@ class Surroundings(NamedTuple):
 
 
 def zero(function: Callable[[Floats], Floats], low: float, high: float) -> float:
-    return float(zeros(lambda _, x: function(x), np.array([low]), np.array([high]))[0])
+    """One zero between bounds at which a function has different signs, to the last digit."""
+    from scipy.optimize import brentq
 
+    def value(x: float) -> float:
+        return float(function(np.array([x]))[0])
 
-def _pairs(zeros: int) -> int:
-    """At how many places on either side of the most likely one each of so many zeros is sought."""
-    return min(_AT_ONCE // max(zeros, 1) // 2, _ASIDE)
+    return float(brentq(value, low, high, xtol=_LEAST, rtol=_ROUNDING, maxiter=1000))
 
 
 def _values(function: Callable[[Integers, Floats], Floats], which: Integers, x: Floats) -> Floats:
     return function(np.repeat(which, x.shape[1]), x.ravel()).reshape(x.shape)
-
-
-def _narrowed(x: Floats, f: Floats) -> tuple[Floats, ...]:
-    """The two neighbours a and b with a zero between them, and the one next to a; their values."""
-    other = np.signbit(f) != np.signbit(f[:, :1])
-    other[:, -1] = True
-    end = np.argmax(other, axis=1)
-    row, last = np.arange(end.size), f.shape[1] - 1
-    before, after = np.maximum(end - 2, 0), np.minimum(end + 1, last)
-    back = (end == last) | ((end > 1) & (np.abs(f[row, before]) < np.abs(f[row, after])))
-    places = (
-        np.where(back, end - 1, end),
-        np.where(back, end, end - 1),
-        np.where(back, before, after),
-    )
-    return (*(x[row, place] for place in places), *(f[row, place] for place in places))
-
-
-def _share(
-    a: Floats, b: Floats, c: Floats, f_a: Floats, f_b: Floats, f_c: Floats
-) -> tuple[Floats, Booleans]:
-    """How far from a to b the zero most likely lies; whether interpolation says so."""
-    with np.errstate(all="ignore"):  # coinciding values: bisection
-        place, value = (a - b) / (c - b), (f_a - f_b) / (f_c - f_b)
-        smooth = (value**2 < place) & ((1 - value) ** 2 < 1 - place)
-        share = f_a / (f_b - f_a) * f_c / (f_b - f_c) + (c - a) / (b - a) * f_a / (
-            f_c - f_a
-        ) * f_b / (f_c - f_b)
-    smooth &= np.isfinite(share)
-    return np.where(smooth, share, 0.5), smooth
-
-
-def _spread(share: Floats, margin: Floats, smooth: Booleans, pairs: int) -> Floats:
-    """Places between a and b: about `share`, ever closer up to `margin`, or evenly spaced."""
-    if pairs == 0:
-        return share[:, None]
-    closer = margin[:, None] ** (np.arange(1, pairs + 1) / pairs)
-    share = share[:, None]
-    about = _between(share - share * closer, share, (share + (1 - share) * closer)[:, ::-1])
-    return about if smooth.all() else np.where(smooth[:, None], about, _even(pairs)[1:-1])
-
-
-@cache
-def _even(pairs: int) -> Floats:
-    """As many places from 0 to 1 as are looked at first, evenly spaced."""
-    return np.linspace(0, 1, 2 * pairs + 3)
-
-
-def _between(before: Floats, values: Floats, after: Floats) -> Floats:
-    """Columns side by side; one may be given as shape (n,)."""
-    parts = [x[:, None] if x.ndim == 1 else x for x in (before, values, after)]
-    return np.concatenate(parts, axis=1)

@@ -16,7 +16,7 @@ from analytic.problem.contours.families import catenary
 from analytic.problem.digest import digest_of
 from analytic.problem.ends import check_ends, first_contact, sign_of, start_of, stop_of
 from analytic.problem.errors import InputError, require
-from analytic.problem.limits import AnyCase
+from analytic.problem.limits import AnyCase, given_contour
 from analytic.problem.numbers import pair
 from analytic.problem.poses import Pose, Poses, along_x
 from analytic.problem.provenance import recorded_contours
@@ -133,7 +133,7 @@ class Case(AnyCase, Shown):
     @cached_property
     def centreline(self) -> Contour:
         """The contour that the centreline feels, a cone's at its tip; in units of the length."""
-        return self.profile.scaled(1 / self.beam.length).offset(self.beam.unloaded.tip_radius)
+        return given_contour(self.profile, self.beam)
 
     def _check_way(self) -> None:
         """A way on which the clamp turns starts clear, and has all angles in it."""

@@ -1,11 +1,13 @@
 """The one exception for input that cannot be used."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import PurePath
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 _Kind = TypeVar("_Kind")
+Place: TypeAlias = Callable[[int], str]
+"""Where a row of a table stands, in words: ``"line 17 of rig.csv"``."""
 
 
 class InputError(ValueError):
@@ -92,3 +94,7 @@ def require(name: str, value: object, kind: type[_Kind], remedy: str) -> _Kind:
         found = repr(value) if isinstance(value, str) else f"a {type(value).__name__}"
         raise InputError(name, found[:80], f"a {kind.__name__}", remedy)
     return value
+
+
+def row_number(row: int) -> str:
+    return f"row {row}"

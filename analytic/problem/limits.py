@@ -3,7 +3,7 @@
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.clamp_path import ClampWay, Sweep
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.support import (
     Support,
     beyond_the_paper,
@@ -12,6 +12,13 @@ from analytic.problem.support import (
     require_plain,
     require_weightless,
 )
+
+
+def given_contour(profile: Contour, beam: Beam) -> Contour:
+    """What the centreline feels, a cone's at its tip, in units of the vibrissa's length."""
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    return profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
 
 
 class OfVibrissa:

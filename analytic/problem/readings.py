@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SENSED
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, Place, row_number
 from analytic.problem.files import as_path
 from analytic.problem.limits import OfVibrissa
-from analytic.problem.places import Place, row_number
 from analytic.problem.provenance import check_provenance, recorded_contours
 from analytic.problem.support import Support, support_of, support_record
 from analytic.problem.sweep_table import SweepTable, usable

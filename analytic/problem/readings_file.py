@@ -12,9 +12,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from analytic.problem.columns import COLUMNS
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, Place
 from analytic.problem.files import regular_file, whole_file
-from analytic.problem.places import Place
 
 _LARGEST = 512_000_000  # bytes; a CSV of 10^6 stations with all columns has 220 MB
 _MOST_CELLS = 100_000_000  # a small Parquet file may hold the same value that often

@@ -12,8 +12,7 @@ import pyarrow.compute as pc
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.columns import CONTACT, ODD, SENSED, WORDS
-from analytic.problem.errors import InputError, unknown
-from analytic.problem.places import Place, row_number
+from analytic.problem.errors import InputError, Place, row_number, unknown
 
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
 

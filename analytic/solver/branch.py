@@ -18,8 +18,7 @@ from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
-from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import equilibria
+from analytic.solver.equilibria import equilibria, surplus_and_rate
 from analytic.solver.general.path import cells, phase_limits
 from analytic.solver.grid import Grid, Samples, along, folded
 

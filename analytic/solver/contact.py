@@ -14,6 +14,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
+from analytic.problem.limits import given_contour
 from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
@@ -25,7 +26,6 @@ from analytic.solver.equilibria import equilibria
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
-from analytic.solver.given import given_contour
 from analytic.solver.residuals import without_inexact
 
 _AT_ONCE = 4096  # contacts: their intermediate results stay in the processor's cache

@@ -13,6 +13,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
+from analytic.problem.limits import given_contour
 from analytic.problem.numbers import pair
 from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
@@ -21,8 +22,7 @@ from analytic.problem.shown import Shown, stacked
 from analytic.problem.support import Support, check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
-from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import Equilibria, equilibria_at, tangent_contact
+from analytic.solver.equilibria import Equilibria, equilibria_at, surplus_and_rate, tangent_contact
 from analytic.solver.general.chain import (
     clear_state,
     joined,
@@ -31,7 +31,6 @@ from analytic.solver.general.chain import (
 )
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import INSIDE, States, Vibrissa
-from analytic.solver.given import given_contour
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
 

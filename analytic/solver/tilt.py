@@ -24,10 +24,10 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
+from analytic.problem.limits import given_contour
 from analytic.problem.reach import contact_range
 from analytic.problem.support import require_plain
 from analytic.solver.elastica import Span, frame, span
-from analytic.solver.given import given_contour
 
 _GRID = 801  # contour points to find the fold between; it is then exact
 _LEAST = 1e-18  # rad; less than any rotation of a tip that is loaded

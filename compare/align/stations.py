@@ -16,9 +16,12 @@ from compare.sense.noise import scales
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
+_SAME_PLACE = 1e-3  # of the way from station to station, where they are as near as that
 _SAME_POSE = 1e-6  # L, rad, and of a tangent's components
 _CUBIC = 4  # stations that a cubic spline needs
 _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings out
+# Of a reading's largest magnitude: half of the rms that sweeps of 40 segments are allowed.
+_KNOWN = 1e-3
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,12 +34,13 @@ class Alignment:
     # and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     table: pd.DataFrame
     # Every station of the candidate in one of: ``compared``; ``beside_jump`` (as the reference is
-    # on its other side: where it jumps is known to a station); ``free`` (in both); ``one_free``
-    # (contact in one sweep only, as between two snap-offs); ``reference_untrusted`` (there, or on
-    # one side); ``untrusted`` (the candidate says so itself, and the reference does not);
-    # ``dropped`` (zeros where the reference is in contact, between loads of its own);
-    # ``between_phases`` (no reference stations of one phase on both sides, or a jump between them:
-    # there is nothing to interpolate); ``outside`` (beyond the reference).
+    # on its other side: where it jumps is known to a station); ``reference_coarse`` (its stations
+    # are too far apart to say what is between them); ``free`` (in both); ``one_free`` (contact in
+    # one sweep only, as between two snap-offs); ``reference_untrusted`` (there, or on one side);
+    # ``untrusted`` (the candidate says so itself, and the reference does not); ``dropped`` (zeros
+    # where the reference is in contact, between loads of its own); ``between_phases`` (no reference
+    # stations of one phase on both sides, or a jump between them: there is nothing to interpolate);
+    # ``outside`` (beyond the reference).
     counts: dict[str, int]
 
     def __repr__(self) -> str:
@@ -72,7 +76,8 @@ def align(
     order = np.argsort(x_ref)
     between = (x_ref[order][1:] + x_ref[order][:-1]) / 2
     nearest = order[np.searchsorted(between, x, side="right")]
-    same = np.abs(x_ref[nearest] - x) <= _SAME_STATION * size
+    step = float(np.ptp(x_ref)) / len(x_ref)
+    same = np.abs(x_ref[nearest] - x) <= min(_SAME_STATION * size, _SAME_PLACE * step)
 
     scale = np.array([*scales(reference).values()])[:, None]
     values, own = (
@@ -103,11 +108,14 @@ def align(
     reasons = np.select([*why_not.values()], [*why_not], "compared")
     there, ends = values[:, nearest], np.append(starts, len(x_ref))
     between_two = np.flatnonzero((reasons == "compared") & ~same)
+    coarse = np.zeros(len(x))
     for group in pd.Series(between_two).groupby(covering[between_two]).indices.values():
         here = between_two[group]
         one = covering[here[0]]
         on = slice(ends[one], ends[one + 1])
         there[:, here] = interpolant(x_ref[on], values[:, on])(x[here])
+        coarse[here] = _unknown(x_ref[on], values[:, on] / scale, x[here])
+    reasons[(reasons == "compared") & (coarse > _KNOWN)] = "reference_coarse"
     off = (np.abs(own - there) / scale).max(axis=0)
     for i in after.tolist():
         near = np.flatnonzero((reasons == "compared") & beside(x, x_ref[i : i + 2], size))
@@ -127,7 +135,8 @@ def align(
         columns[f"{name}_reference"] = row[compared]
         columns[f"{name}_candidate"] = candidate.values(name)[compared]
     counts = {
-        reason: int((reasons == reason).sum()) for reason in ("compared", "beside_jump", *why_not)
+        reason: int((reasons == reason).sum())
+        for reason in ("compared", "beside_jump", "reference_coarse", *why_not)
     }
     return Alignment(pd.DataFrame(columns), counts)
 
@@ -210,6 +219,29 @@ def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:
     if len(places) < _CUBIC or np.diff(places).min() < _APART * np.ptp(places):
         return make_interp_spline(places, values, k=1, axis=-1)
     return CubicSpline(places, values, axis=-1)
+
+
+def _unknown(x: Floats, values: Floats, at: Floats) -> Floats:
+    """By how much a spline through the values may be off, from what each is off its neighbours'.
+
+    A cubic through two on either side misses a value by twice as much as the spline does past a
+    kink, and by more where they are smooth.
+    """
+    x, first = np.unique(x, return_index=True)
+    count = len(x)
+    if count == 1:
+        return np.zeros(len(at))
+    each, some = np.arange(count)[:, None], min(count, 5)
+    around = np.clip(each - 2, 0, count - some) + np.arange(some)
+    around = around[around != each].reshape(count, -1)
+    ahead = x[:, None] - x[around]
+    apart = x[around][:, :, None] - x[around][:, None, :] + np.eye(some - 1)
+    weights = ahead.prod(axis=1, keepdims=True) / ahead / apart.prod(axis=2)
+    values = values[:, first]
+    missed = np.abs((values[:, around] * weights).sum(axis=2) - values).max(axis=0) / 2
+    missed[[0, -1]] = missed[[1, -2]]
+    above = np.clip(np.searchsorted(x, at), 1, count - 1)
+    return np.asarray(np.maximum(missed[above - 1], missed[above]))
 
 
 def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) -> None:

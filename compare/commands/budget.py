@@ -1,6 +1,6 @@
 """What a disagreement is made of: ``run --budget``, at rest, in motion and in space."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -9,17 +9,13 @@ from analytic import Readings
 from analytic.problem.errors import require
 from compare.commands import terminal
 from compare.commands.sweeping import AnyReadings
-from compare.explain.budget import Budget
 from compare.explain.parts import Parted
-from compare.read.job import AnyJob, Job, SpaceJob
+from compare.read.job import AnyJob, Job
 from compare.show.budgets import budget_summary
 from compare.show.document import Text
-from compare.simulate.budgets import measure_budget, require_rest
+from compare.simulate.budgets import measure_budget
 from compare.simulate.dispatch import simulate
 from compare.simulate.target import NAIVE, Fastest, Followed, find_fastest, follow_advice
-from mujoco_models.motion import Motion
-
-_SWEEPS = "sweeps of the budget"
 
 
 @dataclass(frozen=True)
@@ -40,53 +36,34 @@ class Measured:
             terminal.keep(folder / name, content)
 
 
+def budget_of(job: AnyJob) -> tuple[Any, Mapping[str, Any]]:
+    """The budget of a job, and the sweeps that it is from."""
+    measure: Callable[..., tuple[Any, Mapping[str, Any]]] = measure_budget
+    with terminal.progress("sweeps of the budget") as advance:
+        return measure(job.case, job.settings, advance, motion=job.motion, model=job.model)
+
+
 def measured(job: AnyJob, target: float | None) -> Measured:
     """Measure and print the budget of a job, and what to do for a wanted error."""
-    if isinstance(job, SpaceJob):
-        require_rest(job.motion)
-        with terminal.progress(_SWEEPS) as advance:
-            found, swept = measure_budget(job.case, job.settings, advance)
-        _print(job, *budget_summary(found))
-        return Measured(swept["base"], found)
-    return _at_rest(job, target) if job.motion is None else _in_motion(job, job.motion, target)
-
-
-def budget_at_rest(job: Job) -> tuple[Budget, Mapping[str, Readings]]:
-    with terminal.progress(_SWEEPS) as advance:
-        return measure_budget(job.case, job.settings, advance)
-
-
-def _at_rest(job: Job, target: float | None) -> Measured:
-    found, runs = budget_at_rest(job)
-    _print(job, *budget_summary(found))
-    if target is None:
-        return Measured(runs["base"], found)
+    found, runs = budget_of(job)
+    base = runs["base"]
+    terminal.show(Text("", strong=f"Budget of {job.case.name}"), *budget_summary(found))
+    if isinstance(job, Job) and job.motion is not None:
+        content = found.to_dict()
+        if target is not None:
+            content["fastest"] = fastest = _fastest(job, runs, target)
+            terminal.show(*map(Text, _quickest(fastest)))
+        return Measured(base, contents={"motion-budget.json": content}, runs=runs)
+    if target is None or not isinstance(job, Job):
+        return Measured(base, found)
     advice = follow_advice(job.case, found, runs, target)
     terminal.show(*map(Text, _advised(advice)))
     contents = {"budget.json": {**found.to_dict(), "advice": advice.to_dict()}}
-    return Measured(runs["base"], found, reached=advice.reached, contents=contents)
+    return Measured(base, found, advice.reached, contents)
 
 
-def _in_motion(job: Job, motion: Motion, target: float | None) -> Measured:
-    with terminal.progress(_SWEEPS) as advance:
-        found, runs = measure_budget(
-            job.case, job.settings, advance, motion=motion, model=job.model
-        )
-    _print(job, *budget_summary(found))
-    content = found.to_dict()
-    if target is not None:
-        fastest = _fastest(job, motion, runs, target)
-        content["fastest"] = fastest
-        tried = ", ".join(f"{v:.3g}: {error:.1e}" for v, error in fastest.tried.items())
-        terminal.print_line(
-            f"Fastest for {target:g}: {fastest.speed:.3g} L/T1, {fastest.error:.1e} rms, "
-            f"{fastest.seconds:.1f} s; {fastest.at_rest:.1e} is left at rest."
-        )
-        terminal.print_line(f"  {tried}")
-    return Measured(runs["base"], contents={"motion-budget.json": content}, runs=runs)
-
-
-def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: float) -> Fastest:
+def _fastest(job: Job, runs: Mapping[str, Readings], target: float) -> Fastest:
+    motion: Any = job.motion
     if job.model is None and motion.solref is None:
         motion = replace(motion, contact_stiffness=motion.stiffness)
 
@@ -99,8 +76,13 @@ def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: flo
     return find_fastest(job.solve(), runs, move, target)
 
 
-def _print(job: AnyJob, *summary: Any) -> None:  # noqa: ANN401
-    terminal.show(Text("", strong=f"Budget of {job.case.name}"), *summary)
+def _quickest(found: Fastest) -> list[str]:
+    tried = ", ".join(f"{v:.3g}: {error:.1e}" for v, error in found.tried.items())
+    return [
+        f"Fastest for {found.target:g}: {found.speed:.3g} L/T1, {found.error:.1e} rms, "
+        f"{found.seconds:.1f} s; {found.at_rest:.1e} is left at rest.",
+        f"  {tried}",
+    ]
 
 
 def _advised(advice: Followed) -> list[str]:

@@ -5,16 +5,18 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.kinds import A_RIG, For, from_rigs, pass_files, require_use
 from compare.commands.options import (
-    AGREES,
-    DISAGREES,
+    A_RIG,
     CaseName,
     Columns,
+    For,
     Way,
+    from_rigs,
     number_or_auto,
     option,
     out_folder,
+    pass_files,
+    require_use,
     words,
 )
 from compare.commands.output import check_own, distinct_name, output_folder, waiting
@@ -50,7 +52,7 @@ def calibrate(
             "NUMBER|auto",
         ),
     ] = "auto",
-) -> int:
+) -> bool:
     """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Several passes
@@ -65,8 +67,7 @@ def calibrate(
     from analytic.from_clamp.calibration.calibrate import doubt_of_case
     from analytic.from_clamp.calibration.unknowns import LAG
     from compare.commands import terminal
-    from compare.commands.rig_files import RigFiles
-    from compare.commands.sweep_lines import note_rows
+    from compare.commands.sweeping import RigFiles, note_rows
     from compare.read.case import case_tables, load_job
     from compare.sense.record import without_dropouts
     from compare.show.case_file import CASE_MARK, calibrated_case
@@ -99,4 +100,4 @@ def calibrate(
         if found.explains:
             of = f"vibrissa reconstruct FILE... --beam {made}{shift}"
             terminal.print_line(f"  of unknown objects with this vibrissa: {of}")
-    return AGREES if found.explains else DISAGREES
+    return found.explains

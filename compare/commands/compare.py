@@ -1,5 +1,6 @@
 """The command ``compare``: files of readings against another or against a case's closed form."""
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -7,23 +8,21 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import (
-    A_RIG,
-    For,
-    are_passes,
-    no_rigs,
-    pass_files,
-    require_readings,
-    require_use,
-)
+from analytic.problem.files import regular_file
 from compare.commands.options import (
+    A_RIG,
     BeamFile,
     Columns,
+    For,
     InFrame,
     Way,
+    are_passes,
+    no_rigs,
     number_or_auto,
     option,
     out_folder,
+    pass_files,
+    require_use,
 )
 from compare.commands.output import distinct_name, waiting
 from compare.read.case import load_case
@@ -92,7 +91,7 @@ def compare(
         For((ONE,)),
     ] = None,
     frame: Annotated[InFrame, For((SPACE,))] = "world",
-) -> int:
+) -> bool:
     """Compare readings with others or with a closed form.
 
     The limits are those of --tolerances, else the case's. The sweeps are in space if the reference
@@ -101,8 +100,7 @@ def compare(
     those of rigs. Passes that `rig` wrote are compared as one: their mean, with their scatter.
     """
     job = None if Path(reference).suffix.lower() in TABLES else load_case(reference)
-    stored = [Path(reference)] if job is None else []
-    require_readings(stored)
+    stored = [regular_file(reference, "readings file", sys.maxsize)] if job is None else []
     first, candidates = candidates[0], pass_files(candidates)
     passes = len(candidates) > 1 and are_passes(candidates)
     kind = _kind(job, stored, candidates[:1] if passes else candidates)
@@ -122,10 +120,7 @@ def compare(
         other = replace(rig, columns=reference_column or (), beam=reference_beam)
         expected = comparing.expected(job, Path(reference), kind == SPACE, other)
         repeated = comparing.mean_of(candidates, expected, rig) if passes else None
-        if repeated is None:
-            measured = comparing.measured(candidates[0], expected, rig)
-        else:
-            measured = repeated.mean
+        measured = repeated.mean if repeated else comparing.measured(candidates[0], expected, rig)
         found = comparing.compared(expected, measured, job, tolerances, numbers, frame)
         if budget is not None or uncertainty is not None or job is not None:
             found = comparing.validated(found, job, uncertainty, budget)
@@ -143,7 +138,6 @@ def _kind(job: "AnyJob | None", stored: list[Path], candidates: list[Path]) -> s
 
         in_space = is_spatial(stored[0])
     if in_space and len(candidates) > 1:
-        raise InputError(
-            "CANDIDATE", ", ".join(map(str, candidates)), "one file in space", "compare one by one"
-        )
+        given = ", ".join(map(str, candidates))
+        raise InputError("CANDIDATE", given, "one file in space", "compare one by one")
     return SPACE if in_space else ONE if len(candidates) == 1 else SEVERAL

@@ -3,19 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal
 
 from analytic import Beam, InputError, Readings, Sweep
 from analytic.problem.readings_file import is_ours
 from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_complaint
 from compare.align.frames import Frame
 from compare.commands import terminal
-from compare.commands.options import AGREES, DISAGREES
 from compare.commands.output import distinct_names, page_folder
-from compare.commands.pipeline import AnyComparison, reported
-from compare.commands.rig_files import RigFiles as RigFiles
-from compare.commands.sweep_lines import note_rows
-from compare.commands.sweeping import AnyReadings
+from compare.commands.pipeline import AnyComparison, reported, several_reported
+from compare.commands.sweeping import AnyReadings, note_rows
+from compare.commands.sweeping import RigFiles as RigFiles
 from compare.comparison import Comparison, compare
 from compare.explain.budget import Budget
 from compare.judge.tolerances import SpatialTolerances, Tolerances
@@ -27,19 +25,15 @@ from compare.read.limits import read_tolerances
 from compare.read.run_folder import read_stored
 from compare.read.space_readings import read_space
 from compare.show.passes import repeats_summary
-from compare.show.side_by_side import SideBySide, summary, write_side_by_side
-
-Number: TypeAlias = float | Literal["auto"]
+from compare.show.side_by_side import SideBySide
 
 
 def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:
     """The reference: the closed form of a case, or what a file holds."""
-    if job is not None:
-        exact: AnyReadings = job.solve()
-        return exact
-    if in_space:
-        return SpatialReadings.read(file)
-    return rig.read(file)
+    if job is None:
+        return SpatialReadings.read(file) if in_space else rig.read(file)
+    exact: AnyReadings = job.solve()
+    return exact
 
 
 def measured(file: Path, reference: AnyReadings, rig: RigFiles) -> AnyReadings:
@@ -91,15 +85,15 @@ def compared(
     candidate: AnyReadings,
     job: AnyJob | None,
     limits: Path | None,
-    numbers: tuple[Number, Number],
+    numbers: tuple[float | Literal["auto"], float | Literal["auto"]],
     frame: Frame,
 ) -> AnyComparison:
     """The comparison, by the limits of a file, else by the case's."""
-    tolerances: Tolerances | SpatialTolerances | None = None if job is None else job.tolerances
-    if limits is not None and isinstance(reference, SpatialReadings):
-        tolerances = read_tolerances(limits, SpatialTolerances)
-    elif limits is not None:
-        tolerances = read_tolerances(limits, Tolerances)
+    tolerances: Any = None if job is None else job.tolerances
+    if limits is not None:
+        in_space = isinstance(reference, SpatialReadings)
+        kind: Any = SpatialTolerances if in_space else Tolerances
+        tolerances = read_tolerances(limits, kind)
     offset, noise = numbers
     return compare(reference, candidate, tolerances, offset=offset, noise=noise, frame=frame)
 
@@ -112,9 +106,8 @@ def validated(
     if uncertainty is not None:
         uncertain = load_job(uncertainty)
         if uncertain.uncertainties is None:
-            raise InputError(
-                "--uncertainty", uncertainty, "a case file with [uncertainty]", "add the table"
-            )
+            allowed = "a case file with [uncertainty]"
+            raise InputError("--uncertainty", uncertainty, allowed, "add the table")
     if isinstance(uncertain, Job) and isinstance(found, Comparison) and uncertain.uncertainties:
         numerics = None if budget is None else read_stored(budget, Budget)
         return found.validated(uncertain.case, uncertain.uncertainties, budget=numerics)
@@ -125,8 +118,8 @@ def validated(
 
 def keep_comparison(
     found: AnyComparison, out: Path, body: Body | None, passes: Repeats | None
-) -> int:
-    """Write the report and print it; the exit code."""
+) -> bool:
+    """Write the report and print it; whether the sweeps agree."""
     with page_folder(out) as folder:
         written = reported(found, folder, body=body)
     for readings in (found.reference, found.candidate):
@@ -134,16 +127,14 @@ def keep_comparison(
             note_rows(readings)
     if passes is not None:
         terminal.show(*repeats_summary(passes))
-    if isinstance(found.candidate, SpatialReadings):
-        complaint = wrench_complaint(reconstruct_space(found.candidate))
-        if complaint is not None:
-            terminal.print_line(f"{found.candidate.source}: {complaint}")
-    given = isinstance(found, Comparison) and found.validation is None
-    more = (
-        "; [uncertainty] in the case says whether the disagreement means anything" if given else ""
-    )
+    more = ""
+    if isinstance(found, Comparison):
+        if found.validation is None:
+            more = "; [uncertainty] in the case says whether the disagreement means anything"
+    elif (complaint := wrench_complaint(reconstruct_space(found.candidate))) is not None:
+        terminal.print_line(f"{found.candidate.source}: {complaint}")
     terminal.print_report(written, more)
-    return AGREES if found.agrees else DISAGREES
+    return found.agrees
 
 
 def side_by_side_of(
@@ -151,9 +142,8 @@ def side_by_side_of(
 ) -> SideBySide:
     """Many files of readings, against one reference and each other."""
     if len({path.absolute() for path in files}) < len(files):
-        raise InputError(
-            "CANDIDATE", ", ".join(map(str, files)), "each file once", "leave the second one out"
-        )
+        given = ", ".join(map(str, files))
+        raise InputError("CANDIDATE", given, "each file once", "leave the second one out")
     plain = replace(rig, columns=(), beam=None)  # of ours nothing is to be said
 
     def read(path: Path, otherwise: Beam | None = None) -> Readings:
@@ -166,12 +156,9 @@ def side_by_side_of(
     return SideBySide.of(exact, {n: read(path, known) for n, path in named.items()}, case=case)
 
 
-def keep_side_by_side(found: SideBySide, out: Path) -> int:
-    """Write and print how far all are apart; the exit code."""
+def keep_side_by_side(found: SideBySide, out: Path) -> bool:
+    """Write and print how far all are apart; whether all agree."""
     with page_folder(out) as folder:
         for readings in (found.reference, *(one.candidate for one in found.against.values())):
             note_rows(readings)
-        terminal.show(*summary(found))
-        for path in write_side_by_side(found, folder, "side-by-side"):
-            terminal.print_written(path)
-    return AGREES if found.agree else DISAGREES
+        return several_reported(found, folder, "side-by-side")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from analytic.problem.errors import InputError
-from compare.commands.options import AGREES, CaseName, flag, option, require_fraction, words
+from compare.commands.options import CaseName, flag, option, require_fraction, words
 from compare.commands.output import check_own, output_folder, waiting
 from mujoco_models.allowed import BeamKind
 
@@ -48,7 +48,7 @@ def export(
     urdf: Annotated[
         bool, flag("--urdf", "Write URDF, as for *.urdf: a chain without springs.")
     ] = False,
-) -> int:  # fmt: skip
+) -> bool:  # fmt: skip
     """Write a model to paste into a robot, chosen for a wanted error.
 
     Segments, time step and contacts are the coarsest with which what is written, swept past the
@@ -93,7 +93,7 @@ def export(
         for line in said:
             terminal.print_line(line)
         terminal.keep(out, text)
-    return AGREES
+    return True
 
 
 def _of_material(beam: "Beam", material: str | None) -> tuple["Beam", float]:

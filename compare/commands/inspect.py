@@ -8,12 +8,13 @@ import typer
 
 from analytic.problem.errors import InputError, unknown
 from analytic.problem.files import regular_file
-from compare.commands.kinds import For, require_use
-from compare.commands.options import AGREES, DISAGREES, Changes, flag, option, out_folder
+from compare.commands.options import Changes, For, flag, option, out_folder, require_use, words
 from compare.commands.output import check_own, output_folder
-from compare.read.kinds import MODEL
+from compare.read.kinds import MODEL, PLANE
+from mujoco_models.allowed import CONTACT_STIFFNESSES
 
 if TYPE_CHECKING:
+    from compare.read.job import AnyJob
     from compare.simulate.inspection import Inspection
 
 FILE, SINGLE = "a model's own file", "single precision"
@@ -66,7 +67,7 @@ def inspect(
         _OF_A_FILE,
     ] = None,
     out: Annotated[Path | None, out_folder("none; with --float32 results/CASE-float32")] = None,
-) -> int:
+) -> bool:
     """Measure what beam a MuJoCo model is, what is wrong, and what to set.
 
     With --write: a copy of its file with just these settings, and the case that it is a model of.
@@ -77,11 +78,10 @@ def inspect(
     """
     if float32:
         require_use(context, SINGLE)
-        from compare.commands.float32 import evaluate
-
         changes = Changes(stations=stations, segments=segments)
         job = changes.made(changes.load(model))
-        return evaluate(job, changes.folder(out, f"{job.case.name}-float32"), contact_stiffness)
+        place = changes.folder(out, f"{job.case.name}-float32")
+        return _in_single_precision(job, place, contact_stiffness)
     from analytic.problem.named import NAMED_TABLES
 
     is_case = model in NAMED_TABLES or model.endswith(".toml")
@@ -111,7 +111,7 @@ def inspect(
             from compare.simulate.profile import picture
 
             picture(inspection.found).savefig(folder / "profile.png", dpi=120)
-    return AGREES if inspection.sound else DISAGREES
+    return inspection.sound
 
 
 def _path(model: str) -> Path:
@@ -146,3 +146,45 @@ def _of_a_case(case: str) -> "Inspection":
     from compare.simulate.inspection import Inspection, measured_beam
 
     return Inspection(measured_beam(job.model), job.case.beam)
+
+
+def _in_single_precision(job: "AnyJob", folder: Path, stiffnesses: str) -> bool:
+    """Evaluate the states at rest by what is installed for it, over the contact stiffness."""
+    from compare.read.job import Job
+
+    if not isinstance(job, Job) or job.kind != PLANE:
+        raise InputError("--float32", "given", f"for {PLANE}", f"this is {job.kind}")
+    own = float(job.settings.contact_stiffness)
+    wanted = sorted({own, *_numbers(stiffnesses)})
+    from engines.precision.evaluators import evaluators
+
+    there = evaluators()
+    with output_folder(folder) as place:
+        from compare.commands import terminal
+        from compare.show.float32 import losses_table, picture, sentence
+        from engines.precision.gate import by_stiffness, gate
+
+        steps = len(wanted) * job.case.sweep.stations
+        with terminal.progress("single precision", steps) as advance:
+            table = gate(job.case, job.settings, there, wanted, advance)
+        found = by_stiffness(table)
+        for name, rows in found.groupby("evaluator", sort=False):
+            terminal.show(losses_table(str(name), rows, job.case.name))
+            terminal.print_line(sentence(str(name), rows))
+        for name, rows in (("stations", table), ("float32", found)):
+            terminal.keep(place / f"{name}.csv", rows)
+        terminal.keep(place / "float32.png", picture(found, job.case.name))
+        lost = found.loc[found["contact_stiffness"] == own, "lost"].sum()
+        return not lost
+
+
+def _numbers(text: str) -> list[float]:
+    least, largest = CONTACT_STIFFNESSES
+    try:
+        found = [float(word) for word in words(text)]
+    except ValueError:
+        found = []
+    if not found or not all(least <= one <= largest for one in found):
+        allowed = f"numbers between commas, each between {least:g} and {largest:g}"
+        raise InputError("--contact-stiffness", repr(text), allowed, "correct it")
+    return found

@@ -5,15 +5,13 @@ from typing import Annotated, Literal
 
 import typer
 
-from compare.commands.options import AGREES
-
 
 def list_what_there_is(
     what: Annotated[
         Literal["cases", "engines", "methods", "studies", "models"] | None,
         typer.Argument(help="One of them; all if left out.", show_default=False),
     ] = None,
-) -> int:
+) -> bool:
     """List cases, engines, methods, studies or models."""
     for name, lines in _LISTS.items():
         if what is None:
@@ -21,7 +19,7 @@ def list_what_there_is(
         if what in (None, name):
             for line in lines():
                 typer.echo(line if what else f"  {line}")
-    return AGREES
+    return True
 
 
 def _cases() -> Iterator[str]:

@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable
+from functools import wraps
 from io import TextIOWrapper
 from traceback import format_exc
 from typing import Annotated, Any
@@ -19,10 +20,9 @@ from compare.commands.inspect import inspect
 from compare.commands.listing import list_what_there_is
 from compare.commands.output import ended_by_signals, warn
 from compare.commands.reconstruct import reconstruct
-from compare.commands.report import report
 from compare.commands.rig import rig
 from compare.commands.run import run, view
-from compare.commands.study import study
+from compare.commands.study import report, study
 from compare.commands.verify import verify
 
 _GONE = {
@@ -46,9 +46,8 @@ class Group(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401  # typer's own
         if args[0] in _GONE:
-            raise InputError(
-                "command", args[0], "one of `vibrissa --help`", f"use {_GONE[args[0]]}"
-            )
+            instead = f"use {_GONE[args[0]]}"
+            raise InputError("command", args[0], "one of `vibrissa --help`", instead)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401
@@ -63,7 +62,7 @@ class Group(TyperGroup):
                 formatter.write_dl(rows, col_max=width)
 
 
-BAD_INPUT = 2
+AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
 _LONGEST = 800  # characters of an error
 
 app = typer.Typer(
@@ -73,7 +72,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # markup would swallow the brackets of [beam] and [tolerances]
 )
 
-COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
+COMMANDS: dict[str, tuple[Callable[..., bool], ...]] = {
     "Sweep and compare": (run, compare, view),
     "What the clamp says": (reconstruct, calibrate, rig),
     "Models": (inspect, export),
@@ -84,10 +83,19 @@ COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
 _NAMES = {list_what_there_is: "list"}
 
 
+def _with_exit_code(command: Callable[..., bool]) -> Callable[..., int]:
+    @ended_by_signals()
+    @wraps(command)
+    def ended(*given: Any, **named: Any) -> int:  # noqa: ANN401  # whatever the command takes
+        return AGREES if command(*given, **named) else DISAGREES
+
+    return ended
+
+
 for group, commands in COMMANDS.items():
     for command in commands:
         name = _NAMES.get(command, command.__name__)
-        app.command(name, rich_help_panel=group)(ended_by_signals()(command))
+        app.command(name, rich_help_panel=group)(_with_exit_code(command))
 
 
 def _show_version(asked: bool) -> None:
@@ -131,7 +139,7 @@ def _run() -> int:
         if not sys.argv[1:]:
             app(["--help"], standalone_mode=False)
             return BAD_INPUT
-        return app(standalone_mode=False) or 0
+        return app(standalone_mode=False) or AGREES
     except (InputError, TyperException, OSError, ArithmeticError, MemoryError) as error:
         return _refuse(_in_words(error))
     except (typer.Abort, KeyboardInterrupt) as error:
@@ -139,10 +147,8 @@ def _run() -> int:
     except Exception as error:
         if os.environ.get("VIBRISSA_TRACEBACK"):
             typer.echo(format_exc(), err=True)
-        return _refuse(
-            f"internal error, {type(error).__name__}: {error}; please report it with what "
-            "VIBRISSA_TRACEBACK=1 shows"
-        )
+        said, remedy = f"internal error, {type(error).__name__}: {error}", "VIBRISSA_TRACEBACK=1"
+        return _refuse(f"{said}; please report it with what {remedy} shows")
 
 
 def _in_words(error: Exception) -> str:
@@ -160,9 +166,8 @@ def _in_words(error: Exception) -> str:
         case MemoryError():
             return f"out of memory ({error}); take fewer segments or contour points"
         case ZeroDivisionError() | OverflowError() | FloatingPointError():
-            return (
-                f"a number beyond double precision ({error}); check the units and sizes of the case"
-            )
+            beyond = f"a number beyond double precision ({error})"
+            return f"{beyond}; check the units and sizes of the case"
     return str(error)
 
 
@@ -170,12 +175,9 @@ def _require_utf8(word: str) -> None:
     try:
         word.encode()
     except UnicodeEncodeError as error:
-        raise InputError(
-            "argument",
-            ascii(word),
-            f"text in the encoding of the terminal, {sys.getfilesystemencoding()}",
-            "rename the file or folder, or set LC_ALL=C.UTF-8",
-        ) from error
+        allowed = f"text in the encoding of the terminal, {sys.getfilesystemencoding()}"
+        remedy = "rename the file or folder, or set LC_ALL=C.UTF-8"
+        raise InputError("argument", ascii(word), allowed, remedy) from error
 
 
 def _refuse(message: str) -> int:

@@ -1,22 +1,102 @@
-"""Options that several commands share, and the job that they describe."""
+"""Options that several commands share, for what they hold, and the job that they describe.
+
+What is given is looked at before any work is done: an option that would be ignored is bad input.
+"""
 
 import math
+import sys
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import For
+from analytic.problem.files import regular_file
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from mujoco_models.allowed import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
     from compare.read.job import AnyJob
-    from mujoco_models.motion import Motion
 
-AGREES, DISAGREES = 0, 1
+IN_THE_PLANE = (PLANE, MOTION, MODEL)
+ANY_CASE = (*IN_THE_PLANE, SPACE)
+A_RIG = "a file that no engine wrote"
+
+
+@dataclass(frozen=True)
+class For:
+    """What an option holds for: any of these kinds, and beside all of what else is named."""
+
+    kinds: tuple[str, ...]
+    beside: tuple[str, ...] = ()
+
+    def lacks(self, kind: str, others: Collection[str]) -> str | None:
+        """What would be allowed, if the option would be ignored."""
+        if kind not in self.kinds:
+            return f"left out but for {' or '.join(self.kinds)}"
+        missing = [one for one in self.beside if one not in others]
+        return f"beside {missing[0]}" if missing else None
+
+
+def require_use(context: typer.Context, kind: str, *others: str) -> None:
+    """Refuse options that would be ignored: of what kind it is, and what else is asked for."""
+    hints = get_type_hints(context.command.callback, include_extras=True)
+    given = {one.name: one for one in context.command.params if one.name and _given(context, one)}
+    asked = {*others, *(one.opts[0] for one in given.values())}
+    for name, parameter in given.items():
+        uses = [use for use in getattr(hints[name], "__metadata__", ()) if isinstance(use, For)]
+        lacks = [use.lacks(kind, asked) for use in uses]
+        if lacks and all(lacks):
+            is_option, value = parameter.param_type_name == "option", context.params[name]
+            called = parameter.opts[0] if is_option else name.upper()
+            shown = "given" if isinstance(value, bool) else str(value)
+            raise InputError(called, shown, str(lacks[-1]), f"this is {kind}")
+
+
+def _given(context: typer.Context, parameter: Any) -> bool:  # noqa: ANN401  # typer's own
+    source = context.get_parameter_source(parameter.name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
+def no_rigs(files: Iterable[Path]) -> bool:
+    """Whether this project wrote all of these files of readings."""
+    from analytic.problem.readings_file import is_ours
+
+    return all(is_ours(file) for file in files)
+
+
+def from_rigs(files: Collection[Path]) -> bool:
+    """Whether a rig's file is among these, or passes of one: then a direction says something."""
+    return not no_rigs(files) or are_passes(files)
+
+
+def pass_files(files: Iterable[Path]) -> list[Path]:
+    """The files of readings; of a folder that ``rig`` wrote those of its passes."""
+    found = []
+    for file in files:
+        if not file.is_dir():
+            found.append(file)
+            continue
+        if not (file / "passes.json").is_file():
+            remedy = "make one: vibrissa rig FILE... --rig RIG.toml --out DIR"
+            raise InputError("FILE", file, "a file, or a folder that `rig` wrote", remedy)
+        from compare.read.run_folder import PassesRecord, read_stored
+
+        record = read_stored(file / "passes.json", PassesRecord)
+        found += [file / f"{one['name']}.parquet" for one in record.passes]
+    for file in found:
+        regular_file(file, "readings file", sys.maxsize)
+    return found
+
+
+def are_passes(files: Iterable[Path]) -> bool:
+    """Whether ``rig`` wrote all of these files of readings."""
+    from analytic import Readings
+
+    return no_rigs(files) and all("pass" in Readings.read(file).provenance for file in files)
+
 
 # What is done with a case, as options ask for it.
 EXACT, SIMULATED = "the closed form", "an engine"
@@ -123,18 +203,13 @@ class Changes:
 
         given = self._given("segments", "beam", "obstacle")
         given |= {"planar": False} if self.spatial else {}
-        stations = job.stations if self.stations is None else self.stations
-        if not isinstance(job, Job):
-            return job.changed(stations, given)
-        return replace(job.changed(stations, given), motion=self._moved(job.motion))
+        made = job.changed(job.stations if self.stations is None else self.stations, given)
+        faster = self._given("speed", "timestep")
+        if isinstance(made, Job) and (made.motion or self.motion or faster):
+            from mujoco_models.motion import Motion
 
-    def _moved(self, motion: "Motion | None") -> "Motion | None":
-        given = self._given("speed", "timestep")
-        if motion is None and not (self.motion or given):
-            return None
-        from mujoco_models.motion import Motion
-
-        return replace(motion or Motion(), **given)
+            return replace(made, motion=replace(made.motion or Motion(), **faster))
+        return made
 
     def _given(self, *names: str) -> dict[str, Any]:
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}

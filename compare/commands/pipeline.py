@@ -12,18 +12,16 @@ from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.files import remove_own
 from compare.commands import terminal
 from compare.commands.output import waiting
-from compare.commands.sweeping import AnyReadings, printed, simulated, solved, sweep_file
+from compare.commands.sweeping import AnyReadings, printed, simulated, sweep_file
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
 from compare.explain.parts import Parted
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
 from compare.read.runs import EngineOutcome
-from compare.show.document import Film, Text
-from compare.show.plane_page import plane_summary
-from compare.show.report import write_report
+from compare.show.document import Film
+from compare.show.report import summary_of, write_report
 from compare.show.side_by_side import SideBySide, reasons, summary, write_side_by_side
-from compare.show.spatial_page import spatial_summary
 from engines import Outcome, list_engines
 from engines.apart import sweep_apart
 
@@ -54,7 +52,9 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
         start_server(SWEEPERS)  # it imports while we do
     exact: AnyReadings | None = None
     if not (asked.sweep_only and job.engines):
-        exact = solved(job, folder, asked.certified)
+        with waiting("solving"):
+            exact = job.solve(asked.certified)
+            exact.write(folder / "analytic.parquet")
     if isinstance(job, Job) and job.engines not in ((), ("mujoco",)):
         return _swept_by_engines(job, exact, folder, asked.budget)
     if exact is None:
@@ -70,32 +70,31 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
         from compare.commands.budget import Measured, measured
 
     split = measured(job, asked.target) if asked.budget else Measured(simulated(job, folder))
-    candidate = split.base
-    candidate.write(folder / sweep_file(job))
-    comparison = compare(exact, candidate, job.tolerances, frame=asked.frame)
-    if isinstance(comparison, Comparison) and isinstance(job, Job) and job.uncertainties:
+    split.base.write(folder / sweep_file(job))
+    found = compare(exact, split.base, job.tolerances, frame=asked.frame)
+    if isinstance(job, Job) and isinstance(found, Comparison) and job.uncertainties:
         with waiting("validating"):
             numerics = split.budget if isinstance(split.budget, Budget) else None
-            comparison = comparison.validated(job.case, job.uncertainties, "candidate", numerics)
-    film = _filmed(comparison, folder, job.body, asked.frames)
-    written = reported(comparison, folder, split.budget, film, job.body)
+            found = found.validated(job.case, job.uncertainties, "candidate", numerics)
+    film = _filmed(found, folder, job.body, asked.frames)
+    written = reported(found, folder, split.budget, film, job.body)
     split.write(folder)
-    possible = job.kind == PLANE or printed(job, candidate, folder)
+    possible = job.kind == PLANE or printed(job, split.base, folder)
     if isinstance(job, Job) and job.model is not None:
         from compare.simulate.inspection import Inspection, measured_beam
 
         for fault in Inspection(measured_beam(job.model), job.case.beam).faults:
             terminal.print_line(str(fault))
-    elif isinstance(job, Job) and job.motion is not None and isinstance(comparison, Comparison):
-        _print_beside_rest(job, comparison, folder)
+    elif isinstance(job, Job) and job.motion is not None and isinstance(found, Comparison):
+        _print_beside_rest(job, found, folder)
     several = isinstance(job, Job) and job.case.others
     more = "" if asked.budget or several else "; --budget adds what the disagreement is made of"
     terminal.print_report(written, more)
-    return comparison.agrees and possible and split.reached
+    return found.agrees and possible and split.reached
 
 
 def _filmed(
-    comparison: AnyComparison, folder: Path, body: "Body | None", frames: int | None
+    found: AnyComparison, folder: Path, body: "Body | None", frames: int | None
 ) -> Film | None:
     """The film, if there is to be one; an older one would be of other sweeps."""
     from compare.show.animation import plane, space
@@ -104,14 +103,11 @@ def _filmed(
         remove_own(folder / "animation.gif")
         return None
     with terminal.progress("frames", frames) as advance:
-        if isinstance(comparison, Comparison):
-            plane.write_animation(
-                comparison.reference, comparison.candidate, folder, frames, advance
-            )
+        if isinstance(found, Comparison):
+            plane.write_animation(found.reference, found.candidate, folder, frames, advance)
         elif body is not None:
-            space.write_space_animation(
-                comparison.reference, comparison.candidate, folder, body, frames, advance
-            )
+            both = found.reference, found.candidate
+            space.write_space_animation(*both, folder, body, frames, advance)
     return Film.of(folder)
 
 
@@ -124,15 +120,8 @@ def reported(
 ) -> Path:
     with waiting("drawing"):
         written = write_report(comparison, folder, budget, film, body)
-    print_comparison(comparison)
+    terminal.show(*summary_of(comparison))
     return written
-
-
-def print_comparison(comparison: AnyComparison) -> None:
-    if isinstance(comparison, Comparison):
-        terminal.show(*plane_summary(comparison))
-    else:
-        terminal.show(*spatial_summary(comparison))
 
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
@@ -146,16 +135,16 @@ def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
     with terminal.progress("at rest", job.stations) as advance:
         rest = simulate_sweep(job.case, settings, advance)
     rest.write(folder / "at-rest.parquet")
+    resting = f"at rest, with contacts of {settings.contact_stiffness:.1e} EI/L^3"
+    size, unit = rest.running_unit
     for what, found in (
-        (f"at rest, with contacts of {settings.contact_stiffness:.1e} EI/L^3",
-         compare(comparison.reference, rest)),
+        (resting, compare(comparison.reference, rest)),
         ("what the motion adds to that", compare(rest, comparison.candidate)),
-    ):  # fmt: skip
+    ):
         shift = found.snap_off.difference
         sizes = (f"{name} {found.disagreement[name].rms:.1e}" for name in CLAMP_READINGS)
-        size, unit = rest.running_unit
         late = "" if shift is None else f"; snap-off {shift / size:+.1e} {unit}"
-        terminal.show(Text(f"{what}: {', '.join(sizes)}{late}"))
+        terminal.print_line(f"{what}: {', '.join(sizes)}{late}")
 
 
 def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_budget: bool) -> bool:
@@ -165,16 +154,21 @@ def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_bu
     if not isinstance(exact, Readings):
         terminal.show(*reasons(_rows(outcomes)))
         return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
-    budget = None
+    budget: Budget | None = None
     if with_budget and "mujoco" in sweeps:
-        from compare.commands.budget import budget_at_rest
+        from compare.commands.budget import budget_of
 
-        budget, _ = budget_at_rest(job)
+        budget, _ = budget_of(job)
     found = SideBySide.of(exact, sweeps, _rows(outcomes), budget, job.case.name)
+    return several_reported(found, folder, "engines")
+
+
+def several_reported(found: SideBySide, folder: Path, called: str) -> bool:
+    """Print and write how far all are apart; whether all agree."""
     terminal.show(*summary(found))
     if found.split is not None:
         terminal.print_line(found.split.sentence)
-    for path in write_side_by_side(found, folder, "engines"):
+    for path in write_side_by_side(found, folder, called):
         terminal.print_written(path)
     return found.agree
 
@@ -192,10 +186,8 @@ def _swept(job: Job, folder: Path) -> Sequence[Outcome]:
                 found[-1].readings.write(folder / f"{name}.parquet")
             advance()
     if all(one.readings is None for one in found):
-        raise InputError(
-            "engine", ", ".join(job.engines), "one that sweeps the case",
-            f"{found[0].engine}: {found[0].trouble}",
-        )  # fmt: skip
+        trouble = f"{found[0].engine}: {found[0].trouble}"
+        raise InputError("engine", ", ".join(job.engines), "one that sweeps the case", trouble)
     return found
 
 
@@ -205,6 +197,5 @@ def _rows(outcomes: Sequence[Outcome]) -> list[EngineOutcome]:
     for one in outcomes:
         found = known[one.engine]
         role, tuned = ("", "") if found.engine is None else (found.engine.role, found.engine.tuned)
-        version = found.version or "none"
-        rows.append(EngineOutcome(one.engine, role, version, tuned, one.trouble))
+        rows.append(EngineOutcome(one.engine, role, found.version or "none", tuned, one.trouble))
     return rows

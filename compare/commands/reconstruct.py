@@ -1,30 +1,30 @@
 """The command ``reconstruct``: the object from the clamp."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import A_RIG, For, from_rigs, no_rigs, pass_files, require_use
 from compare.commands.options import (
-    AGREES,
-    DISAGREES,
+    A_RIG,
     BeamFile,
     Columns,
+    For,
     InFrame,
     Way,
+    from_rigs,
+    no_rigs,
     option,
     out_folder,
+    pass_files,
+    require_use,
     words,
 )
 from compare.commands.output import distinct_name, distinct_names, waiting
 from compare.read.case import load_space_job
 from compare.read.kinds import SPACE
 from compare.read.toml import TomlFile
-
-if TYPE_CHECKING:
-    from compare.read.job import SpaceJob
 
 SWEEP = "readings in the plane"
 
@@ -76,7 +76,7 @@ def reconstruct(
         ),
     ] = None,
     frame: Annotated[InFrame, For((SPACE,), (A_RIG,))] = "world",
-) -> int:
+) -> bool:
     """Find the object from the clamp readings alone.
 
     In space --beam takes a case file, too: its vibrissa, its clamp, and the true body to compare
@@ -84,7 +84,9 @@ def reconstruct(
     """
     if noise is not None and not 0 <= noise < 1:
         raise InputError("--noise", noise, "a number from 0 up to 1", "as 0.01")
-    known = None if beam is None else _in_space(beam)
+    known = None  # the case in space that the vibrissa's file is, if it is one
+    if beam is not None and "body" in TomlFile.read(beam, "beam file").tables:
+        known = load_space_job(beam)
     found = pass_files(files)
     from compare.read.space_readings import is_spatial
 
@@ -96,34 +98,26 @@ def reconstruct(
         require_use(context, SPACE, *([A_RIG] if column or not no_rigs(in_space) else []))
     with waiting("loading"):
         from compare.commands import reconstructing
-    rig = reconstructing.RigFiles(column or (), beam, direction, frame)
-    code = AGREES
+    rig, level = reconstructing.RigFiles(column or (), beam, direction, frame), noise or 0.0
+    good = True
+
+    def place(file: Path, *inner: str) -> Path:
+        return out.joinpath(*inner) if out else Path(f"results/{distinct_name(file)}-reconstructed")
+
     if swept:
         passes = [reconstructing.without_faults(one, offset) for one in rig.read_all(swept)]
-        place = out / "passes" if out and in_space else out
-        place = place or Path("results") / f"{distinct_name(files[0])}-reconstructed"
-        if not reconstructing.in_the_plane(passes, place, noise, friction, words(method), fit):
-            code = DISAGREES
+        where = place(files[0], *["passes"] * bool(in_space))
+        good = reconstructing.in_the_plane(passes, where, noise, friction, words(method), fit)
     sweeps = []
     for name, path in distinct_names(in_space).items() if in_space else ():
-        place = out / name if out and len(found) > 1 else out
-        place = place or Path("results") / f"{distinct_name(path)}-reconstructed"
         sweeps.append(reconstructing.read_in_space(path, known, rig))
-        if not reconstructing.in_space(sweeps[-1], known, place, noise or 0.0):
-            code = DISAGREES
+        where = place(path, *[name] * (len(found) > 1))
+        good &= reconstructing.in_space(sweeps[-1], known, where, level)
     if sweeps and fit is not None:
-        place = out or Path("results") / f"{distinct_name(in_space[0])}-reconstructed"
         try:
-            explained = reconstructing.body_of(sweeps, place, noise or 0.0, fit)
+            good &= reconstructing.body_of(sweeps, place(in_space[0]), level, fit)
         except InputError as error:
-            if code == AGREES:
+            if good:
                 raise
             raise error.because("what is said of the readings above comes first") from error
-        if not explained:
-            code = DISAGREES
-    return code
-
-
-def _in_space(beam: Path) -> "SpaceJob | None":
-    """The case in space that the vibrissa's file is, if it is one."""
-    return load_space_job(beam) if "body" in TomlFile.read(beam, "beam file").tables else None
+    return good

@@ -27,9 +27,14 @@ from compare.align.offset import checked_offset, without_offset
 from compare.commands import terminal
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
-from compare.commands.rig_files import RigFiles as RigFiles
-from compare.commands.sweep_lines import note_rows, print_reconstruction
-from compare.commands.sweeping import deviations, find_body
+from compare.commands.sweeping import RigFiles as RigFiles
+from compare.commands.sweeping import (
+    deviations,
+    find_body,
+    keep_scene,
+    note_rows,
+    print_reconstruction,
+)
 from compare.read.job import SpaceJob
 from compare.read.space_readings import read_space
 from compare.sense.record import without_dropouts
@@ -43,10 +48,8 @@ CONVEX = "convex"
 
 def read_in_space(file: Path, known: SpaceJob | None, rig: RigFiles) -> SpatialReadings:
     """A file's readings, of the vibrissa of a case if there is one."""
-    if known is None:
-        return read_space(file, None, None, rig.columns, rig.frame)
-    case = known.case
-    return read_space(file, case.beam, case.path.tangent, rig.columns, rig.frame)
+    beam, tangent = (known.case.beam, known.case.path.tangent) if known else (None, None)
+    return read_space(file, beam, tangent, rig.columns, rig.frame)
 
 
 def in_space(readings: SpatialReadings, known: SpaceJob | None, place: Path, noise: float) -> bool:
@@ -66,11 +69,7 @@ def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: st
     with output_folder(place) as folder:
         terminal.show(*object_summary(fitted, sweeps[0].beam.si))
         terminal.keep(folder / "object.json", object_document(fitted))
-        with waiting("drawing"):
-            from compare.show.figures.space import sweep_in_space
-
-            picture = sweep_in_space(SweepScene.of(sweeps[0], fitted.body))
-        terminal.keep(folder / "object.png", picture)
+        keep_scene(folder / "object.png", SweepScene.of(sweeps[0], fitted.body))
     return fitted.explains
 
 
@@ -83,12 +82,8 @@ def _band_of(sweeps: list[SpatialReadings], place: Path, noise: float) -> bool:
         terminal.keep(folder / "object.json", band_document(found))
         for name, body in (("inner", found.inner), ("outer", found.outer)):
             terminal.keep(folder / f"{name}.ply", solid_ply(body.corners))
-        with waiting("drawing"):
-            from compare.show.figures.space import sweep_in_space
-
-            inner, outer = (SweepScene.of(sweeps[0], one) for one in (found.inner, found.outer))
-            picture = sweep_in_space(inner, outer.faces)
-        terminal.keep(folder / "object.png", picture)
+        inner, outer = (SweepScene.of(sweeps[0], one) for one in (found.inner, found.outer))
+        keep_scene(folder / "object.png", inner, outer.faces)
     return found.explains
 
 
@@ -117,12 +112,9 @@ def in_the_plane(
     """
     for one in as_passes(passes):
         if not one.trusted.any():
-            raise InputError(
-                one.source,
-                f"{len(one.table)} stations",
-                "with a finite force_x, force_y and moment_z, and status ok, at some",
-                "see which column lacks its numbers",
-            )
+            allowed = "with a finite force_x, force_y and moment_z, and status ok, at some"
+            remedy = "see which column lacks its numbers"
+            raise InputError(one.source, f"{len(one.table)} stations", allowed, remedy)
     level = None if noise is None else relative_noise(passes, noise)
     if friction is not None:
         passes = [_rubbing(one, friction, level) for one in passes]
@@ -151,10 +143,8 @@ def in_the_plane(
                     f"{quantity(apart, 'length', passes[0].beam)} in the median"
                 )
             points = pd.concat([_points(*one) for one in zip(passes, each, strict=True)])
-            terminal.keep(
-                folder / f"points{end}.csv",
-                points if len(passes) > 1 else points.drop(columns="pass"),
-            )
+            shown = points if len(passes) > 1 else points.drop(columns="pass")
+            terminal.keep(folder / f"points{end}.csv", shown)
             with waiting("drawing"):
                 picture = reconstruction(passes[0], points, fitted)
             terminal.keep(folder / f"reconstruction{end}.png", picture)

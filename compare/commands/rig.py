@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.options import AGREES, option, out_folder
+from compare.commands.options import option, out_folder
 from compare.commands.output import distinct_name, output_folder, waiting
 
 
@@ -19,7 +19,7 @@ def rig(
         Path, option("TOML file with [beam], [columns] and [passes] of the rig.", "FILE")
     ],
     out: Annotated[Path | None, out_folder("results/FILE-passes")] = None,
-) -> int:
+) -> bool:
     """Make readings of a rig's files, without their defects.
 
     They are calibrated, zero and drift are taken off, and what is left out is counted; a picture of
@@ -52,4 +52,4 @@ def rig(
             terminal.print_written(readings.write(folder / f"{one.name}.parquet"))
         terminal.keep(folder / "passes.json", passes_document(passes, found, lag))
         terminal.keep(folder / "passes.png", passes_picture(passes))
-    return AGREES
+    return True

@@ -5,19 +5,19 @@ from typing import Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.kinds import ANY_CASE, IN_THE_PLANE, For, require_use
 from compare.commands.options import (
-    AGREES,
+    ANY_CASE,
     AT_REST,
     COMPARED,
-    DISAGREES,
     EXACT,
     IN_MUJOCO,
+    IN_THE_PLANE,
     SIMULATED,
     WITH_MUJOCO,
     Beam,
     CaseName,
     Changes,
+    For,
     InFrame,
     InMotion,
     Obstacle,
@@ -30,6 +30,7 @@ from compare.commands.options import (
     flag,
     option,
     require_fraction,
+    require_use,
 )
 from compare.commands.output import page_folder, waiting
 from compare.read.kinds import PLANE, SPACE
@@ -86,7 +87,7 @@ def run(
     speed: Speed = None,
     timestep: Timestep = None,
     frame: Annotated[InFrame, For((SPACE,), (WITH_MUJOCO,))] = "world",
-) -> int:
+) -> bool:
     """Sweep a case in both models, compare, and write the report.
 
     One is the closed form, the other MuJoCo, or other engines. In the plane or in space, at rest or
@@ -109,7 +110,7 @@ def run(
 
         length = frames if film else None
         asked = Asked(sweep_only, budget, target, length, certified, frame)
-        return AGREES if carry_out(job, folder, asked) else DISAGREES
+        return carry_out(job, folder, asked)
 
 
 def _done(engines: tuple[str, ...], sweep_only: bool) -> list[str]:
@@ -129,7 +130,7 @@ def view(
     segments: Segments = None,
     beam: Beam = None,
     obstacle: Obstacle = None,
-) -> int:
+) -> bool:
     """Show the sweep in MuJoCo's interactive viewer."""
     changes = Changes(stations, segments, beam, obstacle)
     loaded = changes.load(case)
@@ -141,4 +142,4 @@ def view(
         from mujoco_models import view_sweep
 
         view_sweep(job.case, job.settings)
-    return AGREES
+    return True

@@ -1,4 +1,4 @@
-"""The command ``study``."""
+"""The commands ``study`` and ``report``: many runs, and pages from what is stored of them."""
 
 from contextlib import closing
 from pathlib import Path
@@ -6,11 +6,12 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.kinds import For, require_use
-from compare.commands.options import AGREES, DISAGREES, flag, option, out_folder
-from compare.commands.output import Ended, warn
+from analytic.problem.errors import InputError
+from compare.commands.options import For, flag, option, out_folder, require_use
+from compare.commands.output import Ended, page_folder, waiting, warn
 
 HERE, ON_A_CLUSTER, COUNTED = "a study done here", "a study done on a cluster", "a dry run"
+_REMEDY = "make one: vibrissa run CASE --out DIR, or vibrissa study FILE --out DIR"
 
 
 def study(
@@ -36,7 +37,7 @@ def study(
         ),
         For((ON_A_CLUSTER,)),
     ] = None,
-) -> int:
+) -> bool:
     """Do the runs of a study that are not done yet.
 
     The exit code is 0 if all are done then, 1 if any failed, diverged, did not settle or took too
@@ -46,21 +47,18 @@ def study(
     from compare.study.grid.file import load_study
 
     read = load_study(file)
-    from compare.simulate.workers import available_cores
     from compare.study.grid.plan import Plan
 
     plan = Plan.of(read)
-    cores = workers or available_cores()
     from compare.commands.terminal import print_line, progress
+    from compare.simulate.workers import available_cores
+    from compare.study.work.execute import carry_out, dask_crew, estimate, local_crew
 
+    cores = workers or available_cores()
     if dry_run:
-        from compare.study.work.execute import estimate
-
         print_line(estimate(plan, cores))
-        return AGREES
+        return True
     from compare.study.keep.store import Store
-    from compare.study.work.crews import dask_crew, local_crew
-    from compare.study.work.execute import carry_out
 
     folder = out or Path("results") / plan.study.name
     crew = local_crew(cores) if scheduler is None else dask_crew(scheduler)
@@ -85,4 +83,32 @@ def study(
             raise Ended(f"{error or 'interrupted'}; {how}") from error
     said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(counts.items()))
     print_line(f"{said or 'nothing to do'}; in {folder}")
-    return AGREES if counts.keys() <= {"done"} else DISAGREES
+    return counts.keys() <= {"done"}
+
+
+def report(
+    folder: Annotated[
+        Path,
+        typer.Argument(metavar="DIR", help="Folder of a run or a study, or with folders of runs."),
+    ],
+    out: Annotated[Path | None, out_folder("DIR")] = None,
+) -> bool:
+    """Write the page of a run, of a study, or of many runs.
+
+    A run may be in the plane or in space, or be two sweeps with one --out that nobody compared yet;
+    a study may be under way. The exit code of a run is that of its comparison.
+    """
+    if not folder.is_dir():
+        raise InputError("DIR", folder, "a folder that is there", _REMEDY)
+    if not any(folder.glob("*.parquet")) and not any(folder.rglob("*.json")):
+        raise InputError("DIR", folder, "the folder of a run, a study, or of runs", _REMEDY)
+    from compare.commands import terminal
+    from compare.report import write_report
+    from compare.show.report import summary_of
+
+    with page_folder(out or folder), waiting("reading"):
+        found = write_report(folder, out, warn)
+    if found.comparison is not None:
+        terminal.show(*summary_of(found.comparison))
+    terminal.print_report(found.path)
+    return found.comparison is None or found.comparison.agrees

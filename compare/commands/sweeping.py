@@ -1,14 +1,17 @@
-"""The sweeps of a job: solved, simulated, written, printed; in space the body found from them."""
+"""Sweeps: a job's simulated, those of files read, printed; in space the body found from them."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
+import pandas as pd
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, PHASES, Beam, Direction, InputError, Readings
+from analytic.problem.arrays import Floats
 from analytic.space import (
     Body,
-    Cloud,
     SpatialReadings,
     misses,
     point_cloud,
@@ -17,20 +20,56 @@ from analytic.space import (
     write_ply,
 )
 from analytic.space.problem.readings import FORCE, MOMENT
+from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.output import waiting, warn
-from compare.commands.sweep_lines import print_sweep
+from compare.read.assumed import ASSUMED
 from compare.read.job import AnyJob
+from compare.read.rig import read_measured
+from compare.read.units import OWN_UNITS
+from compare.show.numbers import quantity
 from compare.show.scene import SweepScene
 
 AnyReadings: TypeAlias = Readings | SpatialReadings
 
+_MEANINGS = {
+    "touches again": ": another part of the vibrissa touches the object, or would lie in it",
+    "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
+    "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
+    "impratio 100, a faster foot, or harder contacts in shorter steps",
+    "lost": ": no contact, between stations with one",
+    "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
+    "readings are those of one that slides on",
+}
+# What was done to rows of a rig's file.
+_ROWS = {
+    "out_of_order": "out of order were sorted by foot_x",
+    "averaged": "averaged with the one before, at the same foot_x",
+    "dropped": "filled with zeros amid contact were left out",
+}
 
-def solved(job: AnyJob, folder: Path, certified: bool) -> AnyReadings:
-    with waiting("solving"):
-        exact: AnyReadings = job.solve(certified)
-        exact.write(folder / "analytic.parquet")
-    return exact
+
+@dataclass(frozen=True)
+class RigFiles:
+    """How files that no engine wrote are to be read."""
+
+    columns: Sequence[str]
+    beam: Path | None
+    direction: Direction | None
+    frame: Frame
+
+    def read(self, file: Path, otherwise: Beam | None = None) -> Readings:
+        """A sweep in the plane, of that vibrissa if nothing else says."""
+        return read_measured(file, self.beam, self.columns, otherwise, self.direction)
+
+    def read_all(self, files: Sequence[Path], otherwise: Beam | None = None) -> list[Readings]:
+        """The sweeps of some files, of passes those in the direction that is asked for."""
+        found, way = [self.read(file, otherwise) for file in files], self.direction
+        kept = [one for one in found if way in (None, one.provenance.get("direction", way))]
+        if not kept:
+            went = "they all go the other way: choose it, or leave --direction out"
+            raise InputError("--direction", way, "that of a pass", went)
+        return kept
 
 
 def sweep_file(job: AnyJob) -> str:
@@ -51,9 +90,8 @@ def simulated(job: AnyJob, folder: Path) -> AnyReadings:
 
     what = job.settings.beam if job.model is None else job.model.file.name
     with terminal.progress(f"MuJoCo {what}", job.stations) as advance:
-        swept = simulate(
-            job.case, job.settings, job.motion, job.model, advance=advance, keep=keep_part
-        )
+        how = job.settings, job.motion, job.model
+        swept = simulate(job.case, *how, advance=advance, keep=keep_part)
     swept.write(file)
     return swept
 
@@ -63,17 +101,13 @@ def printed(job: AnyJob, readings: AnyReadings, folder: Path, name: str | None =
     print_sweep(readings)
     if name is not None:
         terminal.print_written(folder / name)
-    return isinstance(readings, Readings) or find_body(
-        readings, job.body, folder, 0.0, name is not None
-    )
+    if isinstance(readings, Readings):
+        return True
+    return find_body(readings, job.body, folder, 0.0, name is not None)
 
 
 def find_body(
-    readings: SpatialReadings,
-    body: Body | None,
-    folder: Path,
-    noise: float,
-    with_picture: bool,
+    readings: SpatialReadings, body: Body | None, folder: Path, noise: float, with_picture: bool
 ) -> bool:
     """Write the contacts found from the clamp; whether a vibrissa can have them.
 
@@ -87,33 +121,32 @@ def find_body(
             raise InputError("readings", "without a contact", "of such a vibrissa", complaint)
         terminal.print_line(f"readings: {complaint}")
     cloud = point_cloud(points)
-    terminal.print_line(_reconstructed(cloud, body, readings.beam.length))
+    said = f"{len(cloud.points)} contacts"
+    if body is not None:
+        found = misses(cloud, body, readings.beam.length)
+        away, turned = found.distances / readings.beam.length, np.degrees(found.angles.max())
+        said += (
+            f"; from the true body {np.sqrt((away**2).mean()):.1e} L rms, {away.max():.1e} L at "
+            f"most; normals {turned:.1e} degrees"
+        )
+    terminal.print_line(said)
     if friction := readings.provenance.get("friction", 0.0):
         leant = np.degrees(np.arctan(friction))
         terminal.print_line(f"friction tilts the normals found by up to {leant:.3g} degrees")
     terminal.keep(folder / "points.csv", points)
     terminal.print_written(write_ply(cloud, folder / "points.ply"))
     if with_picture:
-        with waiting("drawing"):
-            from compare.show.figures.space import sweep_in_space
-
-            picture = sweep_in_space(SweepScene.of(readings, body))
-        terminal.keep(folder / "space.png", picture)
+        keep_scene(folder / "space.png", SweepScene.of(readings, body))
     diverged = "status" in readings.table and bool((readings.table["status"] == "diverged").any())
     return complaint is None and not diverged
 
 
-def _reconstructed(cloud: Cloud, body: Body | None, length: float) -> str:
+def keep_scene(path: Path, scene: SweepScene, around: Floats | None = None) -> None:
+    with waiting("drawing"):
+        from compare.show.figures.space import sweep_in_space
 
-    if body is None:
-        return f"{len(cloud.points)} contacts"
-    found = misses(cloud, body, length)
-    distances = found.distances / length
-    rms = np.sqrt((distances**2).mean())
-    return (
-        f"{len(distances)} contacts; from the true body {rms:.1e} L rms, "
-        f"{distances.max():.1e} L at most; normals {np.degrees(found.angles.max()):.1e} degrees"
-    )
+        picture = sweep_in_space(scene, around)
+    terminal.keep(path, picture)
 
 
 def deviations(sweeps: list[SpatialReadings], share: float) -> dict[str, float] | None:
@@ -124,3 +157,103 @@ def deviations(sweeps: list[SpatialReadings], share: float) -> dict[str, float] 
         name: share * max(float(np.nanmax(np.abs(one.values(name)))) for one in sweeps)
         for name in (*FORCE, *MOMENT)
     }
+
+
+def print_sweep(readings: Readings | SpatialReadings) -> None:
+    """Print what a sweep found, in a line: stations, phases, events, the worst residuals."""
+    table = readings.table
+    parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
+    parts += _untrusted(readings)
+    if "phase" in table:
+        parts.append(_phases(table["phase"].value_counts()))
+    parts += _of_the_plane(readings) if isinstance(readings, Readings) else _of_space(readings)
+    for name in ("residual", "residual_boundary", "residual_moment"):
+        if name in table:
+            worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
+            parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}")
+    terminal.print_line(f"{readings.source}: {'; '.join(parts)}")
+
+
+def _phases(counts: pd.Series) -> str:
+    return ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts)
+
+
+def _of_the_plane(readings: Readings) -> list[str]:
+    """Its snap-off, its motion, and what is beyond the paper."""
+    table = readings.table
+    unsettled = readings.provenance.get("unsettled", {})
+    parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
+    size, unit = readings.running_unit
+    if (at := readings.snap_off) is None:
+        parts.append("no snap-off")
+    else:
+        parts.append(f"snap-off at {readings.running} = {at / size:.4f} {unit}")
+    if "kinetic_share" in table:
+        touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
+        parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
+        parts.append(f"{table['time'].max():.4g} T1")
+    return parts + [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
+
+
+def _of_space(readings: SpatialReadings) -> list[str]:
+    """Where the vibrissa touches and leaves the body."""
+    parts, events = [], readings.provenance["events"]
+    for event in events:
+        x, _, z = (value / readings.beam.length for value in event["foot"])
+        if event["kind"] in ("touch", "release", "slip-off"):
+            parts.append(f"{event['kind']} at foot ({x:.4f}, {z:.4f}) L")
+    hops = sum(event["kind"] == "hop" for event in events)
+    return parts + [f"{hops} hops over edges"] * bool(hops)
+
+
+def _untrusted(readings: Readings | SpatialReadings) -> list[str]:
+    """How many stations have a status that nothing else is said of, where, and what it means."""
+    if "status" not in readings.table:
+        return []
+    said = []
+    for name, group in readings.table.groupby("status", sort=False):
+        if name in ("ok", "unsettled"):
+            continue
+        size, unit = readings.running_unit
+        ends = (group[readings.running].iloc[i] / size for i in (0, -1))
+        where = " to ".join(f"{x:.4f}" for x in ends)
+        meaning = _MEANINGS.get(str(name), "")
+        none = "; no readings" if group[list(CLAMP_READINGS)].isna().all(axis=None) else ""
+        said.append(f"{len(group)} {name} ({readings.running} {where} {unit}{meaning}{none})")
+    return said
+
+
+def note_rows(readings: Readings) -> None:
+    """Say on standard error what was assumed of a rig's file or done to its rows, if anything."""
+    rows = readings.provenance.get("rows", {})
+    notes = []
+    if ASSUMED in readings.provenance:
+        notes.append("no vibrissa given, L = EI = 1 is assumed")
+    if units := readings.provenance.get(OWN_UNITS):
+        shown = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+        notes.append(f"units taken from the line below the names: {shown}")
+    notes += [f"{count} rows {what}" for name, what in _ROWS.items() if (count := rows.get(name))]
+    if notes:
+        warn(f"{readings.source}: {'; '.join(notes)}")
+
+
+def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:
+    counts = found["phase"].value_counts()
+    touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
+    words = [f"{touching} contact points from {len(found)} stations", _phases(counts)]
+    if "unexplained" in counts:
+        words.append(f"{counts['unexplained']} with readings that no such vibrissa has")
+    if unused := int((~readings.trusted).sum()):
+        words.append(f"{unused} not used, their readings are not to be trusted")
+    if touching:
+        x, y = (found[name].to_numpy(dtype=float) for name in ("contact_x", "contact_y"))
+        length = readings.beam.length
+        words.append(
+            f"x from {np.nanmin(x) / length:.4g} to {np.nanmax(x) / length:.4g} L, "
+            f"y from {np.nanmin(y) / length:.4g} to {np.nanmax(y) / length:.4g} L"
+            + (f" (L = {quantity(length, 'length', readings.beam)})" if readings.beam.si else "")
+        )
+    if unanswered := int((found["status"] == "no answer").sum()):
+        words.append(f"{unanswered} to which the method has no answer")
+    by = "" if method == "elastica" else f", {method}"
+    terminal.print_line(f"{readings.source}{by}: {'; '.join(words)}")

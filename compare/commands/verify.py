@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
-from compare.commands.options import AGREES, DISAGREES, flag, out_folder
+from compare.commands.options import flag, out_folder
 from compare.commands.output import page_folder
 
 
@@ -13,7 +13,7 @@ def verify(
         bool, flag("--peers", "Other projects' own test cases, by their engines where installed.")
     ] = False,
     out: Annotated[Path | None, out_folder("results/verify")] = None,
-) -> int:
+) -> bool:
     """Hold what is computed here against what others printed, measured or derived.
 
     The exit code is 1 if any number differs by more than its stated reason makes.
@@ -22,13 +22,13 @@ def verify(
         return (_peers if peers else _sources)(folder)
 
 
-def _sources(folder: Path) -> int:
+def _sources(folder: Path) -> bool:
     from pandas import DataFrame
 
     from compare.commands import terminal
-    from compare.show.html import html
+    from compare.show.page import html
     from compare.verify import record
-    from compare.verify.page import drawn, summary, verdict, verified
+    from compare.verify.record import drawn, summary, verdict, verified
 
     rows, given = [], record.sources()
     with terminal.progress("numbers", sum(len(one["row"]) for one in given)) as advance:
@@ -40,18 +40,18 @@ def _sources(folder: Path) -> int:
     terminal.keep(folder / "report.html", html(verified(rows)))
     terminal.keep(folder / "verify.png", drawn(rows))
     terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
-    return AGREES if found.good else DISAGREES
+    return found.good
 
 
-def _peers(folder: Path) -> int:
+def _peers(folder: Path) -> bool:
     from pandas import DataFrame
 
     from compare.commands import terminal
-    from compare.show.html import html
+    from compare.show.page import html
     from compare.verify.peers import CASES, page, summary
 
     rows = [row for case in CASES for row in case()]
     terminal.show(*summary(rows))
     terminal.keep(folder / "peers.html", html(page(rows)))
     terminal.keep(folder / "peers.csv", DataFrame([asdict(row) for row in rows]))
-    return AGREES
+    return True

@@ -1,14 +1,15 @@
-"""The budget of a disagreement, from readings alone."""
+"""The budget of a disagreement at rest: which sweeps it needs, and what it makes of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import units
-from compare.explain.changes import SHARPER
+from analytic.space import SpatialReadings
+from compare.explain.fit import Suspect, suspects
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
     SAFETY,
@@ -20,10 +21,50 @@ from compare.explain.parts import (
     convergence,
     observed_order,
 )
-from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
 from compare.measure.disagreement import rms
 from compare.sense.noise import scales
+from mujoco_models.allowed import CONTACT_STIFFNESSES
+from mujoco_models.settings import Settings, SpatialSettings
+
+STIFFER = 10  # times the contact stiffness
+SHARPER = 10  # times less of the corners' radius
+CALMER = 100  # times less out of balance
+_REFINED = "it is refined from there"
+_AT_REST = 1e-8  # EI/L; what all the other sweeps are out of balance by at most
+
+
+def controlled_changes(
+    settings: Settings, smooth: bool = True, corners: bool = False
+) -> dict[str, Settings]:
+    """The settings of all sweeps by name; ``base`` is the one that the budget is of.
+
+    They lead from the base to the exact problem, one thing after the other: ``calm`` is more at
+    rest, ``smooth`` has no facets, ``sharp`` has sharper corners, ``stiff`` has harder contacts,
+    and ``two`` and ``four`` have more segments too. Facets come first, for without them the beam's
+    order is plain to see, and segments last, since they bring more beads, which share the load and
+    so harden a loose contact.
+    """
+    n, k = settings.segments, settings.contact_stiffness
+    for name, value, most in (("segments", n, 250), ("contact_stiffness", k, 1e8)):
+        if value > most:
+            raise InputError(f"mujoco.{name} of a budget", value, f"at most {most:g}", _REFINED)
+    if corners and (radius := settings.corner_radius) < 1e-8:
+        raise InputError("mujoco.corner_radius of a budget", radius, "at least 1e-08", _REFINED)
+    rest = replace(settings, tolerance=min(settings.tolerance, _AT_REST))
+    plain = replace(rest, obstacle="primitive") if smooth else rest
+    sharp = replace(plain, corner_radius=settings.corner_radius / SHARPER) if corners else plain
+    stiff = replace(sharp, contact_stiffness=STIFFER * k)
+    return {
+        "base": settings,
+        "calm": replace(settings, tolerance=min(settings.tolerance / CALMER, _AT_REST)),
+        "smooth": plain,
+        **({"sharp": sharp} if corners else {}),
+        "stiff": stiff,
+        "two": replace(stiff, segments=2 * n),
+        "four": replace(stiff, segments=4 * n),
+    }
+
 
 REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
@@ -164,3 +205,41 @@ def _sensor(run: Readings, shared: Shared, exact: Readings) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
     sizes = units(run.beam, CLAMP_READINGS) / [*scales(exact).values()]
     return np.asarray(sizes[:, None] * run.values("discrepancy")[shared.kept])
+
+
+_ORDER = 2.0  # of the chain in 1/N
+_MOST = 400  # segments
+
+
+def changes_in_space(settings: SpatialSettings) -> dict[str, SpatialSettings]:
+    """The settings of all sweeps by name; ``base`` is the one that the budget is of."""
+    segments, stiffness = 2 * settings.segments, STIFFER * settings.contact_stiffness
+    if segments > _MOST:  # half as many show the same
+        segments = settings.segments // 2
+    if stiffness > CONTACT_STIFFNESSES[1]:
+        stiffness = settings.contact_stiffness / STIFFER
+    return {
+        "base": settings,
+        "segments": replace(settings, segments=segments),
+        "stiffness": replace(settings, contact_stiffness=stiffness),
+    }
+
+
+def budget_in_space(
+    exact: SpatialReadings,
+    runs: Mapping[str, SpatialReadings],
+    changes: Mapping[str, SpatialSettings],
+) -> Parted:
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
+
+    Each of the six components is relative to the largest of its kind, force or moment.
+    """
+    shared = np.logical_and.reduce([one.touching for one in (exact, *runs.values())])
+    account = Account(Shared(exact, shared), runs)
+    base, run = changes["base"], account.run
+    finer = (changes["segments"].segments / base.segments) ** _ORDER
+    harder = changes["stiffness"].contact_stiffness / base.contact_stiffness
+    account.add_extrapolated("discretisation", run["base"], run["segments"], finer)
+    account.add_extrapolated("softness", run["base"], run["stiffness"], harder)
+    account.settle()
+    return Parted(**account.common(), **account.closing(), order=_ORDER, blame=account.blame())

@@ -1,33 +1,30 @@
-"""One signature laid over a disagreement: how large it is, and what it leaves."""
+"""Signatures laid over a disagreement: how large they are, what they leave, which are suspects."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from compare.explain.variations import STEP
 
 
 class Fitted(NamedTuple):
     """The best size of a signature."""
 
     size: float
-    left: float
-    """Sum of squares that it leaves."""
-    fraction: float
-    """Of the disagreement's sum of squares that it accounts for."""
+    left: float  # sum of squares that it leaves
+    fraction: float  # of the disagreement's sum of squares that it accounts for
 
 
 class Explanation(NamedTuple):
     """One mistake or fault, as it fits a disagreement best."""
 
-    text: str
-    """What it is, with its size."""
-    left: float
-    """Sum of squares that it leaves."""
-    sizes: int = 1
-    """How many numbers were fitted."""
-    size: float = 0.0
-    """The one that was, if it is one."""
+    text: str  # what it is, with its size
+    left: float  # sum of squares that it leaves
+    sizes: int = 1  # how many numbers were fitted
+    size: float = 0.0  # the one that was, if it is one
 
 
 def fitted(error: Floats, signature: Floats) -> Fitted:
@@ -38,3 +35,47 @@ def fitted(error: Floats, signature: Floats) -> Fitted:
     size = float(s @ e) / weight if weight > 0 else 0.0
     left = float(np.sum((e - size * s) ** 2))
     return Fitted(size, left, 1 - left / all_ if all_ > 0 else 0.0)
+
+
+_UNITS = {
+    "friction": "",
+    "natural_curvature": "/L",
+    "clamp_compliance": " L/EI",
+    "clamp_angle": " rad",
+}
+_CONVINCING = 0.8  # fraction of the unexplained that a suspect must account for
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A quantity of the physics that seems to differ between the two sweeps.
+
+    `change` is by how much in the candidate, relative to its value (``foot_x``: to the length L;
+    ``friction``: the coefficient itself; ``natural_curvature``: 1/L; ``clamp_compliance``, the
+    clamp's rotation by its moment: L/EI; ``clamp_angle``: rad); `share` is how much of the
+    unexplained disagreement's square it accounts for.
+    """
+
+    name: str
+    change: float
+    share: float
+
+    @property
+    def size(self) -> str:
+        if self.name in _UNITS:
+            return f"{self.change:+.2g}{_UNITS[self.name]}"
+        return f"{self.change:+.2%}"
+
+
+def suspects(
+    unexplained: Floats, signatures: Mapping[str, Floats], unresolved: float
+) -> tuple[Suspect, ...]:
+    """Which signatures account for the unexplained disagreement, the best first."""
+    if np.linalg.norm(np.sqrt(np.mean(unexplained**2, axis=-1))) <= unresolved:
+        return ()
+    found = []
+    for name, signature in signatures.items():
+        size, _, fraction = fitted(unexplained, signature)
+        if fraction >= _CONVINCING:
+            found.append(Suspect(name, size * STEP, fraction))
+    return tuple(sorted(found, key=lambda suspect: -suspect.share))

@@ -51,7 +51,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
         yield from _phases(f"phases of the {which}", judged, right, phases, noise.phase_agreement)
     events = {name: (event, asked["transition"]) for name, event in found.transitions.items()}
     events["snap_off"] = found.snap_off, _of_snap_off(found, asked)
-    unasked = {*found.made_by_noise(), *found.not_reached()}
+    unasked = {*found.unsure(), *found.not_reached()}
     seen = {name: pair for name, pair in events.items() if name not in unasked}
     yield from _events(found, seen, found.beyond(), found.not_trusted())
     counts, stations = found.alignment.counts, len(found.candidate.table)

@@ -95,14 +95,22 @@ class Measurement(SweepPair[Readings]):
         along = getattr(self, which).running_values
         return bool(along.min() <= at <= along.max())
 
-    def made_by_noise(self) -> list[str]:
-        """Limits of a Phase B that one sweep alone has, as far as its noise lets it be seen."""
+    def unsure(self) -> list[str]:
+        """Limits of a Phase B that one sweep alone has.
+
+        As far as its noise lets it be seen, or where the other one has no station during it.
+        """
         found = []
-        for name, has, _, _ in self._one_sided():
+        for name, has, lacks, _ in self._one_sided():
+            if not name.startswith("phase_b"):
+                continue
             here = self.judged[has].phase == "tangent"
             tolerance = self.judged[has].shortfall_tolerance[here]
             sure = (self.judged[has].shortfall[here] > _SIGMAS * tolerance).any()
-            found += [name] if name.startswith("phase_b") and not sure else []
+            during = getattr(self, has).running_values[here]
+            theirs = getattr(self, lacks).running_values
+            met = ((during.min() <= theirs) & (theirs <= during.max())).any()
+            found += [] if sure and met else [name]
         return found
 
     def not_trusted(self) -> list[str]:

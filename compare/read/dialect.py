@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, Place, row_number
 from analytic.problem.files import regular_file
-from analytic.problem.places import Place, row_number
 from compare.read.units import is_unit
 
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB

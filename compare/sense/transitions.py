@@ -27,9 +27,10 @@ def locate_transitions(
     At its ends the criterion (26), which is zero inside, is extrapolated to zero from outside, and
     the shortfall of the contact, which is zero outside, from inside; the limit is half-way between
     the two results, which differ where a contact jumps. First contact is where the clamp moment,
-    extrapolated from the first loaded stations, vanishes. In motion, where the vibrissa's mass
-    loads the clamp without contact, it is where the source recorded it, and stations before it and
-    behind the snap-off show no phase.
+    extrapolated from the first two loaded stations, vanishes; what a third one changes says how far
+    that is off, as it does at the limits. In motion, where the vibrissa's mass loads the clamp
+    without contact, it is where the source recorded it, and stations before it and behind the
+    snap-off show no phase.
     """
     at = readings.running_values
     moving = "motion" in readings.provenance
@@ -42,17 +43,18 @@ def locate_transitions(
     if moving:
         found["first_contact"] = _recorded(readings, at), 0.0
     elif (free := np.flatnonzero(judged.phase[: touching[0]] == "free")).size:
-        found["first_contact"] = _zero(at, moment, touching[:2], free[-1], touching[0]), 0.0
+        line, curve = (_zero(at, moment, touching[:n], free[-1], touching[0]) for n in (2, _FIT))
+        found["first_contact"] = line, abs(line - curve)
     votes = np.where(judged.phase[touching] == "tangent", 1, -1)
     begin, end = _best_stretch(votes)
     inside = touching[begin:end]
     before, after = touching[:begin], touching[end:]
     begins, ends = (at[touching[rivals]] for rivals in _rivals(votes, begin, end))
     if inside.size and before.size:
-        place, off = _limit(at, judged, before[-_FIT:], inside[:_FIT])
+        place, off = _limit(at, judged, before[::-1], inside)
         found["phase_b_start"] = place, max(off, float(np.abs(begins - at[inside[0]]).max()))
     if inside.size and after.size:
-        place, off = _limit(at, judged, after[:_FIT], inside[-_FIT:])
+        place, off = _limit(at, judged, after, inside[::-1])
         found["phase_b_end"] = place, max(off, float(np.abs(ends - at[inside[-1]]).max()))
     return found
 
@@ -160,11 +162,14 @@ def _rivals(votes: Integers, begin: int, end: int) -> tuple[Integers, Integers]:
 def _limit(
     at: Floats, judged: Classification, tip: Integers, tangent: Integers
 ) -> tuple[float, float]:
-    """A limit of Phase B between the neighbouring stations `tip` and `tangent`."""
-    ends = (tip[-1], tangent[0]) if tip[-1] < tangent[0] else (tip[0], tangent[-1])
-    outside = _zero(at, judged.criterion, tip, *ends)
-    inside = _zero(at, judged.shortfall, tangent, *ends)
-    return (outside + inside) / 2, abs(outside - inside) / 2
+    """A limit of Phase B between stations on either side, the nearest ones first."""
+    sides = (judged.criterion, tip), (judged.shortfall, tangent)
+    curves, lines = (
+        [_zero(at, values, stations[:n], tip[0], tangent[0]) for values, stations in sides]
+        for n in (_FIT, 2)
+    )
+    place = sum(curves) / 2
+    return place, max(abs(one - place) for one in (*curves, *lines))
 
 
 def _zero(at: Floats, values: Floats, stations: Integers, one: int, other: int) -> float:

@@ -16,8 +16,10 @@ from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
 from analytic.space.from_clamp.noise import COMPONENTS
 from compare.show.document import Block, Table, Text
-from compare.show.numbers import quantity
+from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line
+
+_CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
@@ -124,32 +126,18 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
         "case": calibration.case.name,
         "found": calibration.found,
         "correlation": calibration.correlation.tolist(),
-        "stations": calibration.stations,
-        "misfit": calibration.misfit,
+        **picked(calibration, "stations", "misfit"),
         "noise_correlation": dict(zip(CLAMP_READINGS, correlation, strict=True)),
         "hum_stations": calibration.noise.hum or None,
-        "jitter": calibration.jitter,
-        "undistinguished": calibration.undistinguished,
-        "passes": passes
-        and {
-            "scatter": calibration.scatter,
-            "chi_square": passes.chi_square,
-            "degrees": passes.degrees,
-            "probability": passes.probability,
-            "alike": passes.alike,
-        },
+        **picked(calibration, "jitter", "undistinguished"),
+        "passes": passes and {"scatter": calibration.scatter, **picked(passes, *_CONSISTENCY)},
     }
 
 
 def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
-    document: dict[str, Any] = {
-        "family": found.family,
-        "found": found.found,
-        "explains": found.explains,
-        "misfit": found.misfit,
-        "stations": found.stations,
-        "rivals": {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()},
-    }
+    document = picked(found, "family", "found", "explains", "misfit", "stations")
+    rivals = {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()}
+    document["rivals"] = rivals
     if isinstance(found, FittedBody):
         return document
     return document | {
@@ -163,9 +151,7 @@ def band_document(found: ConvexBand) -> dict[str, Any]:
     """What ``object.json`` holds of the two bodies, which are in files of their own."""
     return {
         "family": "convex",
-        "explains": found.explains,
-        "stations": found.stations,
-        "half_width": found.half_width,
+        **picked(found, "explains", "stations", "half_width"),
         "box": found.box.tolist(),
         "inner_volume": volume(found.inner),
         "outer_volume": volume(found.outer),

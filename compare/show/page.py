@@ -1,20 +1,163 @@
-"""Figures as files, and as parts of a page."""
+"""A document as one offline HTML file, in light and dark, on paper and on a telephone."""
+
+import platform
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from datetime import datetime
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from analytic.problem.arrays import Floats
+from compare.show.document import Document, Table
+from compare.show.scene import SweepScene, corners_and_faces, normals
+from compare.show.style import PHASE_NAMES
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 import base64
 import io
-import re
 import warnings
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup, escape
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pydantic_core import to_json
 
 from analytic.problem.files import SOFTWARE, write_whole
 from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
+
+_PACKAGES = {"vibrissa-testbed": "vibrissa-testbed", "numpy": "NumPy", "scipy": "SciPy",
+             "mujoco": "MuJoCo"}  # fmt: skip
+_PATIENCE = 5  # s; a repository on a slow disk is no reason to wait
+_STATIONS = 200  # that a slider has
+_GHOSTS = 24  # shapes that are always there
+_DIGITS = 4  # of a length in L: a tenth of a pixel
+_LIGHT = np.array([0.3, 0.2, 0.9]) / np.linalg.norm([0.3, 0.2, 0.9])
+_DARKEST = 0.62
+_COLOURS = {"free": "faint", "tip": "blue", "tangent": "orange"}  # of the page, light or dark
+
+
+def html(document: Document) -> str:
+    made = Table("This report", (), [*colophon().items()], words=(1,))
+    return _template().render(document=document, made=made)
+
+
+@cache  # to compile it takes longer than to fill it in
+def _template() -> "Template":
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # slow to load
+
+    environment = Environment(
+        loader=PackageLoader("compare.show"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(
+        kind=lambda block: type(block).__name__,
+        svg=inline_svg,
+        embedded=embedded,
+        turning=turning,
+        code=_code,
+    )
+    return environment.get_template("document.html.j2")
+
+
+def _code(text: object) -> Markup:
+    """Text whose words between back quotes are code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
+def colophon() -> dict[str, str]:
+    """What is known of the process that makes a page."""
+    program, *words = sys.argv
+    found = {
+        "command": "" if program in ("", "-c") else shlex.join([Path(program).name, *words]),
+        "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z"),
+        "versions": ", ".join(_versions()),
+        "commit": _commit(),
+    }
+    return {name: value for name, value in found.items() if value}
+
+
+def _versions() -> Iterator[str]:
+    yield f"Python {platform.python_version()}"
+    for package, name in _PACKAGES.items():
+        with suppress(PackageNotFoundError):
+            yield f"{name} {version(package)}"
+
+
+def _commit() -> str:
+    root = Path(__file__).parents[2]
+    if not (root / ".git").exists():
+        return ""
+    try:
+        described = subprocess.run(
+            ["git", "-C", root, "describe", "--always", "--dirty", "--abbrev=10", "--exclude=*"],
+            capture_output=True,
+            text=True,
+            timeout=_PATIENCE,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return described.stdout.strip()
+
+
+def turning(scene: SweepScene) -> dict[str, object]:
+    """What ``turning.js`` draws, as JSON holds it."""
+    shown = np.unique(np.linspace(0, len(scene.foot) - 1, _STATIONS).round().astype(int))
+    touching = [n for n, i in enumerate(shown) if np.isfinite(scene.contact[i]).all()]
+    corners, where = corners_and_faces(scene.faces)
+    lit = _DARKEST + (1 - _DARKEST) * (1 + normals(scene.faces) @ _LIGHT) / 2
+    lights = zip(lit.round(2).tolist(), where.tolist(), strict=True)
+    return {
+        "low": _rounded(scene.low),
+        "high": _rounded(scene.high),
+        "corners": _rounded(corners),
+        "faces": [[light, *face] for light, face in lights],
+        "every": max(1, len(shown) // _GHOSTS),
+        "first": touching[len(touching) // 2] if touching else 0,
+        "colours": _COLOURS,
+        "stations": [
+            {
+                "foot": _rounded(scene.foot[i]),
+                "line": _rounded(scene.lines[i]),
+                "contact": _rounded(scene.contact[i]),
+                "phase": scene.phase[i],
+                "said": _said(scene, int(i)),
+            }
+            for i in shown
+        ],
+    }
+
+
+def _said(scene: SweepScene, station: int) -> str:
+    x, _, z = scene.foot[station]
+    table = scene.readings.table
+    status = str(table["status"].iloc[station]) if "status" in table else "ok"
+    phase = PHASE_NAMES[scene.phase[station]] if status == "ok" else status
+    count = len(scene.foot)
+    return f"station {station + 1} of {count}, foot at ({x:.3f}, {z:.3f}) L, {phase}"
+
+
+def _rounded(values: Floats) -> list[object] | None:
+    if not np.isfinite(values).all():
+        return None
+    found: list[object] = values.round(_DIGITS).tolist()
+    return found
+
 
 _THEMED = {
     INK: "currentColor",
@@ -51,6 +194,12 @@ def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
 
 def save_figure(figure: Figure, path: Path) -> Path:
     return write_whole(path, png(figure))
+
+
+def write_all(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
+    """Write files by name, each of them whole, in the order given."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return [write_whole(folder / name, content) for name, content in contents.items()]
 
 
 def embedded(file: Path) -> str:

@@ -12,7 +12,7 @@ from analytic.from_clamp.passes import Consistency
 from compare.measure.repeats import Repeats
 from compare.read.passes import Pass
 from compare.show.document import Block, Table, Text
-from compare.show.numbers import quantity
+from compare.show.numbers import picked, quantity
 
 _DRIFTS = 0.01  # of the largest reading: more than the noise of most sensors
 _UNLIKE = 0.05  # of the contact; where the vibrissa lets go passes are unlike, too
@@ -101,11 +101,7 @@ def passes_document(
     said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift", "bends")
     return {
         "passes": [
-            {
-                **{name: getattr(one, name) for name in said},
-                "gaps": one.record.gaps,
-                "widest_step": one.record.widest,
-            }
+            picked(one, *said) | {"gaps": one.record.gaps, "widest_step": one.record.widest}
             for one in passes
         ],
         "lag": lag and asdict(lag),
@@ -116,8 +112,7 @@ def passes_document(
                 "shift_uncertainty": (1.96 * repeated.uncertainty).tolist(),
                 "rms": repeated.rms.tolist(),
                 "rms_without_shift": repeated.rms_without_shift.tolist(),
-                "chi_square": repeated.shifts.chi_square,
-                "probability": repeated.shifts.probability,
+                **picked(repeated.shifts, "chi_square", "probability"),
             }
             for repeated in found
         ],

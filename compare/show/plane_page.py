@@ -9,7 +9,7 @@ from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.explain.parts import fitted_orders
 from compare.show import comparison_page as common
-from compare.show.budgets import convergence_table
+from compare.show.budgets import convergence_picture, convergence_table
 from compare.show.document import (
     Beside,
     Block,
@@ -20,22 +20,28 @@ from compare.show.document import (
     Text,
     Tile,
     Verdict,
-    tiles_line,
 )
 from compare.show.figures import readings as drawn
-from compare.show.figures.budget_bars import convergence_picture
 from compare.show.figures.geometry import geometry
 from compare.show.numbers import object_of, percent, place, quantity, sentence, short, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
-from compare.show.validity import validation_claim, validation_lines, validation_tables
-from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
+from compare.show.verdict import (
+    absent_transitions,
+    scope,
+    validation_claim,
+    validation_lines,
+    validation_tables,
+    verdict,
+    why,
+    worst_reading,
+)
 
 
 def plane_document(
     comparison: Comparison, budget: Budget | None = None, film: Film | None = None
 ) -> Document:
     found = plane_verdict(comparison, budget)
-    remarks = [*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
+    remarks = [*found.remarks, *scope(comparison), *[*validation_lines(comparison)][:1]]
     validation = "Validation: the disagreement against its uncertainty"
     return common.document(
         comparison,
@@ -50,14 +56,6 @@ def plane_document(
         ("snap-off", "Snap-off", _snap_off(comparison)),
         ("convergence", "Convergence", _convergence(budget)),
     )
-
-
-def plane_summary(comparison: Comparison) -> Iterator[Block]:
-    """The verdict and what it rests on, in short."""
-    yield plane_verdict(comparison)
-    yield from map(Text, validation_lines(comparison))
-    yield tiles_line(plane_tiles(comparison))
-    yield from common.apart_table(comparison)
 
 
 def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:

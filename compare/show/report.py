@@ -1,21 +1,22 @@
 """The report of a comparison: one offline HTML file, and the figures beside it."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from analytic.problem.arrays import Floats
-from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.comparison import Comparison, SpatialComparison
 from compare.explain.budget import Budget
 from compare.explain.parts import Parted
-from compare.show.document import Film
-from compare.show.figures.budget_bars import picture
+from compare.show.budgets import picture
+from compare.show.comparison_page import apart_table
+from compare.show.document import Block, Film, Text, tiles_line
 from compare.show.figures.readings import readings
-from compare.show.html import html
-from compare.show.page import as_json, png
-from compare.show.plane_page import plane_document
+from compare.show.page import as_json, html, png, write_all
+from compare.show.plane_page import plane_document, plane_tiles, plane_verdict
 from compare.show.scene import SweepScene, solid_ply
-from compare.show.spatial_page import spatial_document
+from compare.show.spatial_page import spatial_document, spatial_tiles, spatial_verdict
+from compare.show.verdict import validation_lines
 
 
 def write_report(
@@ -47,10 +48,19 @@ def write_report(
             contents |= {f"{drawn.name}.png": png(one) for one in drawn.figures.values()}
     contents["comparison.json"] = as_json(comparison.to_dict())
     contents["report.html"] = html(document)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in contents.items():
-        write_whole(folder / name, content)
-    return folder / "report.html"
+    return write_all(folder, contents)[-1]
+
+
+def summary_of(found: Comparison | SpatialComparison) -> Iterator[Block]:
+    """The verdict and what it rests on, in short."""
+    if isinstance(found, Comparison):
+        yield plane_verdict(found)
+        yield from map(Text, validation_lines(found))
+        yield tiles_line(plane_tiles(found))
+    else:
+        yield spatial_verdict(found)
+        yield tiles_line(spatial_tiles(found))
+    yield from apart_table(found)
 
 
 def budget_files(found: Parted) -> dict[str, str | bytes]:

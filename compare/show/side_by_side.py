@@ -10,7 +10,6 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.problem.files import write_whole
 from compare.comparison import Comparison, compare
 from compare.explain.budget import Budget
 from compare.explain.split import Split, split
@@ -18,9 +17,8 @@ from compare.read.runs import EngineOutcome
 from compare.show import style
 from compare.show.document import Block, Document, Items, Picture, Table, Text, Verdict, sections
 from compare.show.figures.over_foot import foot_label, key_below, shade_reference
-from compare.show.html import html
 from compare.show.numbers import object_of, short
-from compare.show.page import as_json, png
+from compare.show.page import as_json, html, png, write_all
 
 _EDGE = 0.97  # of the picture's width
 
@@ -51,10 +49,8 @@ class SideBySide:
         pairs = combinations([name for name, one in against.items() if _settled(one)], 2)
         between = {(one, other): compare(sweeps[one], sweeps[other]) for one, other in pairs}
         asked = asked or [EngineOutcome(name) for name in sweeps]
-        outcomes = [
-            _compared(one, against[one.name]) if one.name in sweeps else one for one in asked
-        ]
         parts = split(reference, sweeps, {one.name: one.role for one in asked})
+        outcomes = [_compared(x, against[x.name]) if x.name in sweeps else x for x in asked]
         return cls(case, outcomes, against, between, parts, budget)
 
     @property
@@ -123,9 +119,9 @@ def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Pat
     """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
     (figure,) = next(document.pictures()).figures.values()
-    contents: dict[str, str | bytes] = {"html": html(document), "json": as_json(found.to_dict())}
-    contents["png"] = png(figure)
-    return [write_whole(folder / f"{called}.{kind}", each) for kind, each in contents.items()]
+    contents: dict[str, str | bytes] = {f"{called}.html": html(document)}
+    contents |= {f"{called}.json": as_json(found.to_dict()), f"{called}.png": png(figure)}
+    return write_all(folder, contents)
 
 
 def side_by_side_document(found: SideBySide) -> Document:
@@ -153,11 +149,20 @@ def _named(reference: Readings) -> str:
 
 def summary(found: SideBySide) -> Iterator[Block]:
     """Each sweep against the reference and each other, and what their differences are made of."""
-    yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
-    yield from reasons(found.outcomes)
-    yield from _between(found)
+    yield from _each(found)
     if found.parts():
         yield parts_table({found.case: found.parts()})
+
+
+def _each(found: SideBySide) -> Iterator[Block]:
+    yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
+    yield from reasons(found.outcomes)
+    rows = [
+        (f"{one}, {other}", *(short(pair.disagreement[name].rms) for name in CLAMP_READINGS))
+        for (one, other), pair in found.between.items()
+    ]
+    if rows:
+        yield Table("Each other, relative rms", ("pair", *CLAMP_READINGS), rows)
 
 
 def outcomes_table(
@@ -170,21 +175,16 @@ def outcomes_table(
 
 
 def _outcome(one: EngineOutcome) -> tuple[str, ...]:
+    rms = (short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS)
     seconds = one.seconds_a_station
-    return (
-        one.label,
-        *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
-        short(one.snap_off_apart),
-        "none" if seconds is None else f"{1e3 * seconds:.2g}",
-        "no readings" if one.trouble else "agrees" if one.agrees else "disagrees",
-    )
+    time = "none" if seconds is None else f"{1e3 * seconds:.2g}"
+    said = "no readings" if one.trouble else "agrees" if one.agrees else "disagrees"
+    return (one.label, *rms, short(one.snap_off_apart), time, said)
 
 
 def reasons(found: Iterable[EngineOutcome]) -> Iterator[Items]:
     """Why sweeps are missing, disagree, or are not to be trusted everywhere."""
-    said = [
-        f"{one.name}: {one.trouble or one.likely}" for one in found if one.trouble or one.likely
-    ]
+    said = [f"{one.name}: {why}" for one in found if (why := one.trouble or one.likely)]
     if said:
         yield Items(said)
 
@@ -199,10 +199,7 @@ def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table
 
 
 def _by_case(
-    caption: str,
-    head: Sequence[str],
-    found: Mapping[str, Sequence[Sequence[str]]],
-    words: Sequence[int],
+    caption: str, head: Sequence[str], found: Mapping[str, list[tuple[str, ...]]], words: list[int]
 ) -> Table:
     """The rows of all cases, with a column of the case if there are several."""
     if len(found) == 1:
@@ -212,19 +209,8 @@ def _by_case(
     return Table(caption, ("case", *head), named, [0, *(i + 1 for i in words)])
 
 
-def _between(found: SideBySide) -> Iterator[Table]:
-    rows = [
-        (f"{one}, {other}", *(short(pair.disagreement[name].rms) for name in CLAMP_READINGS))
-        for (one, other), pair in found.between.items()
-    ]
-    if rows:
-        yield Table("Each other, relative rms", ("pair", *CLAMP_READINGS), rows)
-
-
 def _sweeps(found: SideBySide) -> Iterator[Block]:
-    yield outcomes_table({found.case: found.outcomes}, _named(found.reference))
-    yield from reasons(found.outcomes)
-    yield from _between(found)
+    yield from _each(found)
     if any(one.role for one in found.outcomes):
         yield Picture(
             "time",
@@ -261,12 +247,8 @@ def _fairness(found: SideBySide) -> Iterator[Block]:
 def error_against_time(found: SideBySide) -> Figure:
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     ax = figure.subplots()
-    ax.set(
-        xscale="log",
-        yscale="log",
-        xlabel="processor time a station [ms], building the model included",
-        ylabel="rms relative to the largest magnitude",
-    )
+    ax.set(xscale="log", yscale="log", ylabel="rms relative to the largest magnitude")
+    ax.set_xlabel("processor time a station [ms], building the model included")
     ax.set_title(f"{style.label(found.case)}: error against time", fontsize=style.LARGE)
     for one in found.outcomes:
         if one.rms is None:

@@ -16,7 +16,6 @@ from compare.show.document import (
     Tile,
     Turntable,
     Verdict,
-    tiles_line,
 )
 from compare.show.figures import space as drawn
 from compare.show.numbers import object_of, percent, short, words
@@ -41,13 +40,6 @@ def spatial_document(
         ("sweep", "The sweep", _sweep(scene, film)),
         ("events", "Where they touch and leave", _events(comparison)),
     )
-
-
-def spatial_summary(comparison: SpatialComparison) -> Iterator[Block]:
-    """The verdict and what it rests on, in short."""
-    yield spatial_verdict(comparison)
-    yield tiles_line(spatial_tiles(comparison))
-    yield from common.apart_table(comparison)
 
 
 def spatial_verdict(comparison: SpatialComparison) -> Verdict:
@@ -75,16 +67,9 @@ def spatial_tiles(comparison: SpatialComparison, budget: Parted | None = None) -
     for name, event in comparison.events.items():
         if event.difference is not None:
             apart = short(event.difference / comparison.reference.running_unit[0], " L")
-            allowed = short(comparison.tolerances.event)
-            yield Tile(
-                f"{words(name)} apart", apart, f"candidate less reference; {allowed} allowed"
-            )
+            note = f"candidate less reference; {short(comparison.tolerances.event)} allowed"
+            yield Tile(f"{words(name)} apart", apart, note)
     yield from common.unexplained(budget)
-
-
-def events_table(comparison: SpatialComparison) -> Table:
-    caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
-    return common.places_table(comparison, caption, comparison.events)
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:
@@ -108,7 +93,8 @@ def _sweep(scene: SweepScene, film: Film | None) -> Iterator[Block]:
 
 
 def _events(comparison: SpatialComparison) -> Iterator[Block]:
-    yield events_table(comparison)
+    caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
+    yield common.places_table(comparison, caption, comparison.events)
     shows = "When both sweeps touch, in which phase, and how far their contacts are apart"
     yield Picture(
         "contacts",
@@ -119,13 +105,11 @@ def _events(comparison: SpatialComparison) -> Iterator[Block]:
     said = ""
     if comparison.phase_agreement is None:
         said += "Phases are not compared: a source records none. "
-    if comparison.contact.from_clamp:
-        said += (
-            f"Contacts of {' and '.join(comparison.contact.from_clamp)} are found from the clamp. "
-        )
+    if whose := comparison.contact.from_clamp:
+        said += f"Contacts of {' and '.join(whose)} are found from the clamp. "
     lacking, having = comparison.candidate.source, comparison.reference.source
-    lost = f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}."
-    yield Text(said + lost)
+    said += f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}."
+    yield Text(said)
     statuses = comparison.statuses.items()
     counted = [(f"{which}, {what}", str(n)) for which, of in statuses for what, n in of.items()]
     yield Table("What became of the stations", (), counted)

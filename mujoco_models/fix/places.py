@@ -58,7 +58,8 @@ class Places:
     def defaults(self, kind: str, element: Element) -> Iterator[Element]:
         """Elements whose attributes it has by default, the nearest first."""
         name = self._class_of.get(id(element), "main")
-        ways = [way for top in self.root.children if top.tag == "default" for way in _ways([top])]
+        (root,) = element.model or (self.root,)
+        ways = [way for top in root.children if top.tag == "default" for way in _ways([top])]
         while name:
             way = next((w for w in ways if w[-1].attributes.get("class", "main") == name), None)
             yield from (c for c in (way[-1].children if way else ()) if c.tag == kind)

@@ -1,11 +1,14 @@
-"""The elements of an MJCF file and of what it includes, by their places in the text."""
+"""The elements of an MJCF file and of what it includes or attaches, by places in the text."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 from xml.parsers import expat
 
 from analytic.problem.errors import InputError
+
+Place: TypeAlias = tuple[Path, int]
 
 
 @dataclass
@@ -18,6 +21,11 @@ class Element:
     start: int  # of its start tag, in bytes
     children: list["Element"] = field(default_factory=list)
     end: int = 0  # of its end tag, or of itself if it has none
+    model: tuple["Element", ...] = ()  # the root of what is attached, if it is of that
+
+    @property
+    def place(self) -> Place:
+        return self.file, self.start
 
     def below(self) -> Iterator["Element"]:
         """It and all that is in it, in the order of the text."""
@@ -62,4 +70,40 @@ def read_tree(path: Path, folder: Path | None = None, seen: tuple[Path, ...] = (
                 else [child]
             )
         ]  # fmt: skip
+    _attach(roots[0], folder)
     return roots[0]
+
+
+_LISTS = ("sensor", "actuator", "equality")  # what comes with what is attached
+
+
+def _attach(root: Element, folder: Path) -> None:
+    """Put what other models' bodies hold, under the names that it has here, in its place."""
+    files: dict[str, Path] = {}
+    for asset in root.below():
+        file = folder / asset.attributes.get("file", "")
+        if asset.tag == "model" and file.is_file():
+            own = read_tree(file).attributes.get("model", "")
+            files[asset.attributes.get("name", own)] = file
+    for element in list(root.below()):
+        element.children = [
+            inner
+            for child in element.children
+            for inner in (_attached(child, files, root) if child.tag == "attach" else [child])
+        ]
+
+
+def _attached(attach: Element, files: dict[str, Path], into: Element) -> list[Element]:
+    file = files.get(attach.attributes.get("model", ""))
+    if file is None:
+        return [attach]
+    root, prefix = read_tree(file), attach.attributes.get("prefix", "")
+    for element in root.below():
+        element.model = (root,)
+        if "name" in element.attributes:
+            element.attributes["name"] = prefix + element.attributes["name"]
+    into.children += [child for child in root.children if child.tag in _LISTS]
+    if "body" in attach.attributes:
+        name = prefix + attach.attributes["body"]
+        return [e for e in root.below() if e.tag == "body" and e.attributes.get("name") == name]
+    return [e for world in root.children if world.tag == "worldbody" for e in world.children]

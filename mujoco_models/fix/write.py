@@ -11,7 +11,7 @@ import mujoco
 from analytic.problem.errors import InputError
 from mujoco_models.fix.edit import Edit, Insert
 from mujoco_models.fix.places import Places
-from mujoco_models.fix.tree import Element, read_tree
+from mujoco_models.fix.tree import Element, Place, read_tree
 
 _MANY = 3  # elements for which a default is edited, or made
 
@@ -55,10 +55,12 @@ class Texts:
         self._changes: dict[Path, dict[tuple[int, int], str]] = defaultdict(dict)
         self._bytes: dict[Path, bytes] = {}
         self._new: dict[str, dict[str, str]] = defaultdict(dict)  # of a default to be made, by kind
-        # By the identity of an element, and of a kind that is to be made in it.
-        self._attributes: dict[int, dict[str, str]] = defaultdict(dict)
-        self._within: dict[int, dict[str, dict[str, str]]] = defaultdict(lambda: defaultdict(dict))
-        self._elements: dict[int, Element] = {}
+        # By the place of an element, and of a kind that is to be made in it.
+        self._attributes: dict[Place, dict[str, str]] = defaultdict(dict)
+        self._within: dict[Place, dict[str, dict[str, str]]] = defaultdict(
+            lambda: defaultdict(dict)
+        )
+        self._elements: dict[Place, Element] = {}
 
     def set(self, edit: Edit) -> None:
         """Where an attribute stands already; else in a default of many, or in each element."""
@@ -68,17 +70,17 @@ class Texts:
         found = [self._places.element(edit.kind, i) for i in edit.numbers]
         many = self._places.many(edit.kind, edit.numbers[0])
         if None in found and many is not None:
-            self._within[id(many)][edit.kind].update(edit.attributes)
-            self._elements[id(many)] = many
+            self._within[many.place][edit.kind].update(edit.attributes)
+            self._elements[many.place] = many
             return
         if None in found:
             raise InputError(
                 "--write", f"{edit.kind} {edit.numbers[found.index(None)]} of the model",
-                "to be seen in its file",
-                "another element makes it, or <attach> another file, or <compiler> discards or "
-                f"fuses what stands beside it: set {edit} there",
+                "one that its file states",
+                "another element makes it, or <compiler> discards or fuses what stands beside it: "
+                f"set {edit} there",
             )  # fmt: skip
-        elements = list({id(e): e for e in found if e is not None}.values())
+        elements = list({e.place: e for e in found if e is not None}.values())
         if edit.kind == "joint" and {"stiffness", "damping"}.intersection(dict(edit.attributes)):
             for number, element in zip(edit.numbers, found, strict=True):
                 self._state_springdamper(number, element)
@@ -108,7 +110,7 @@ class Texts:
                 self._give(joint, name, value)
 
     def _given(self, element: Element) -> dict[str, str]:
-        return self._attributes.get(id(element), {})
+        return self._attributes.get(element.place, {})
 
     def _set_default(self, kind: str, elements: list[Element], name: str, value: str) -> None:
         """In the default that they have; in each of them if others have it, too."""
@@ -122,6 +124,7 @@ class Texts:
             shared = {id(None), *(id(d) for d in self._places.defaults(kind, other))}
             if of_all & shared:
                 where = [*elements]
+        where = [e if d is None and e.model else d for d, e in zip(where, elements, strict=True)]
         for element in where:
             if element is not None:
                 self._give(element, name, value)
@@ -135,9 +138,13 @@ class Texts:
             self._change(self._main, root.end, root.end, f"  {new.text}\n")
             return
         element = self._places.element("body", new.body)
-        if element is None:
-            raise InputError("--write", f"body {new.body}", "to be seen in the file",
-                             f"put {new.text} into it")  # fmt: skip
+        if element is None or element.model:
+            name = self._places.model.body(new.body).name or new.body
+            raise InputError(
+                "--write", f"body {name!r}", "one that the model's own file states",
+                f"put {new.text} into a body there, and what another element or file makes into "
+                "that",
+            )  # fmt: skip
         self._put_into(element, new.text)
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)
@@ -185,8 +192,8 @@ class Texts:
                 self._new["option"][name] = value
 
     def _give(self, element: Element, name: str, value: str) -> None:
-        self._attributes[id(element)][name] = value
-        self._elements[id(element)] = element
+        self._attributes[element.place][name] = value
+        self._elements[element.place] = element
 
     def _text(self, file: Path) -> bytes:
         return self._bytes.setdefault(file, file.read_bytes())
@@ -241,8 +248,10 @@ class Texts:
         return (out, *copies.values())
 
     def _include_of(self, included: Path, file: Path) -> re.Match[bytes] | None:
-        """Where a file includes another one: the name in it."""
-        for found in re.finditer(rb"""<include\s[^>]*?file\s*=\s*["']([^"']+)""", self._text(file)):
+        """Where a file includes or attaches another one: the name in it."""
+        for found in re.finditer(
+            rb"""<(?:include|model)\s[^>]*?file\s*=\s*["']([^"']+)""", self._text(file)
+        ):
             if self._main.parent / found[1].decode() == included:
                 return found
         return None

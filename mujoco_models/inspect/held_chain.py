@@ -18,6 +18,7 @@ _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
 _NONE = np.zeros(0, int)
 _BARE = 0.75  # of a link: a first piece without a geom, as half of a cell is
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
+_ROUNDING = 1e-15  # likewise
 # All of MuJoCo that forces take without constraints; factors of the inertia cost ten times that.
 _STAGES = (
     mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_flex, mujoco.mj_tendon, mujoco.mj_collision,
@@ -194,7 +195,7 @@ class HeldChain(HeldModel):
         for _ in range(_ITERATIONS):
             residual = self.evaluate()
             out = self._out_of_balance(residual)
-            if not out < before / 2:
+            if not out < before / 2 or out < _ROUNDING:
                 if out < _AT_REST:
                     self._sense()
                     return

@@ -238,15 +238,18 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
 def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
     """The geoms of a body, but for those that are only seen.
 
-    These are beside others that collide, or, if none does, beside others that are slender.
+    These are beside others that collide, or, if none does, beside others that are slender, or else
+    longer than a half of the longest.
     """
     geoms = np.flatnonzero(model.body_weldid[model.geom_bodyid] == body)
     collide = (model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)
     slender = np.isin(model.geom_type[geoms], _SLENDER)
+    ends = np.reshape([axis_of(model, int(geom)) for geom in geoms], (-1, 2, 3))
+    long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     for mine in (collide, slender):
         if mine.any():
             return [int(geom) for geom in geoms[mine]]
-    return [int(geom) for geom in geoms]
+    return [int(geom) for geom in geoms[2 * long >= long.max(initial=0)]]
 
 
 def _geoms(model: mujoco.MjModel, text: str) -> list[int]:

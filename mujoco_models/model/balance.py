@@ -7,6 +7,8 @@ evaluated last. Arrays have a row for each joint, bead or contact.
 
 from typing import Protocol
 
+import numpy as np
+
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.poses import Pose
 from mujoco_models.beams.layout import Layout
@@ -25,6 +27,8 @@ class Mechanics(Protocol):
     """Of the clamp, in the configuration that was evaluated last."""
     obstacle: Obstacle
     """What the beam is swept past."""
+    radius: float
+    """Of the vibrissa at its clamp [L]."""
     contact_stiffness: float
     """Force over penetration at every bead [EI/L^3]."""
 
@@ -36,16 +40,19 @@ class Mechanics(Protocol):
 
     def contact_curvature(self, slope: Floats) -> Floats:
         """Curvature that the beads' centres feel where the contour has these slope angles [1/L]."""
+        curvature = self.obstacle.curvature(slope)
+        return np.asarray(curvature / (1 + self.radius * curvature))
 
     def joint_positions(self) -> Floats:
         """Where the joints are, shape (n_joints, 2) [L]."""
 
     def slides(self, contacts: Contacts) -> Booleans:
         """Which contacts are of a link whose beads slide; none, if beads never do."""
+        return np.zeros(len(contacts.link), dtype=bool)
 
 
 class Balance(Mechanics, Protocol):
-    """An engine's model of the beam and the obstacle, at rest."""
+    """An engine's model of the beam and the obstacle, at rest, whose beads stay where they are."""
 
     lookout: Lookout
     """What takes part in collisions."""
@@ -72,9 +79,11 @@ class Balance(Mechanics, Protocol):
 
         If any has been moved, the engine's answer is out of date.
         """
+        return False
 
     def hold_beads(self) -> bool:
         """Let all beads be where they were at first; whether any was elsewhere."""
+        return False
 
     def clamp(self) -> Clamp:
         """The clamp's action on the vibrissa, as the engine's own sensor or reaction has it."""

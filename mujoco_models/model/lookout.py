@@ -22,36 +22,13 @@ class Scene(Protocol):
     """Of the beads, shape (n_beads,) [L]."""
 
     def bead_positions(self, beads: Integers) -> Floats:
-        """Where beads are.
-
-        Parameters
-        ----------
-        beads : array of int, shape (n,)
-            Their numbers.
-
-        Returns
-        -------
-        array, shape (n, 2)
-            Positions of their centres [L].
-        """
+        """Where the centres of beads are, shape (n, 2) [L]."""
 
     def show(self, window: int) -> None:
-        """Let what the obstacle has for a window, and nothing else of it, collide.
-
-        Parameters
-        ----------
-        window : int
-            See `Obstacle.window_of`.
-        """
+        """Let what the obstacle has for a window, and nothing else of it, collide."""
 
     def collide(self, beads: frozenset[int]) -> None:
-        """Let these beads, and no others, collide with the obstacle.
-
-        Parameters
-        ----------
-        beads : frozenset of int
-            Their numbers.
-        """
+        """Let these beads, and no others, collide with the obstacle."""
 
 
 class MujocoScene:

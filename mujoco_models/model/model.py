@@ -13,6 +13,7 @@ from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.search import Search
@@ -21,9 +22,9 @@ from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
 from mujoco_models.model.stiffness import stiffen
 from mujoco_models.model.surface import Surface
-from mujoco_models.model.warned import has_diverged
 from mujoco_models.model.weight import hang, holding
 from mujoco_models.obstacles.protocol import GEOM, Obstacle
+from mujoco_models.quiet import has_diverged
 
 STEP = 1e-3  # of MuJoCo's own motion
 LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
@@ -33,7 +34,7 @@ ROUNDING = 1e-13  # L, of a contact's depth: that of its place, which all joints
 _DISTINCT = 1e-2  # of the largest; beads side by side share a load in ways that hardly differ
 
 
-class BeamModel:
+class BeamModel(Balance):
     """MuJoCo's model and state; everything physical comes from it."""
 
     def __init__(
@@ -103,19 +104,15 @@ class BeamModel:
         mujoco.mj_flex(model, data)
         self._search(model, data, self.joint_positions())
         if len(self._surface.sides) and data.ncon:
-            self._fuse()
+            # Left out of the balance are contacts that only repeat another one.
+            self._sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
+            data.contact.exclude[self._sides.fused(data, self._surface)] = FUSED
         mujoco.mj_makeConstraint(model, data)
         mujoco.mj_fwdVelocity(model, data)
         data.qacc[:] = 0
         mujoco.mj_invConstraint(model, data)
         mujoco.mj_rnePostConstraint(model, data)
         mujoco.mj_sensorAcc(model, data)
-
-    def _fuse(self) -> None:
-        """Leave out of MuJoCo's balance the contacts that only repeat another one."""
-        data = self.data
-        self._sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
-        data.contact.exclude[self._sides.fused(data, self._surface)] = FUSED
 
     def relieved(self, rounding: float = ROUNDING) -> Floats:
         """Moment out of balance at each joint, but for what rounding of depths makes of it.
@@ -175,11 +172,6 @@ class BeamModel:
     def contact_places(self) -> Floats:
         """Where MuJoCo has each contact: between the two surfaces."""
         return np.asarray(self.data.contact.pos[:, :2])
-
-    def contact_curvature(self, slope: Floats) -> Floats:
-        """Curvature of the contour that the beads' centres feel."""
-        curvature = self.obstacle.curvature(slope)
-        return np.asarray(curvature / (1 + self.radius * curvature))
 
     def slide_beads(self, contacts: Contacts) -> bool:
         """Let a bead be where the beam is tangential, if beads are too far apart."""

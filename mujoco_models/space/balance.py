@@ -18,8 +18,8 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import cross
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.surface import Surface
 
@@ -91,7 +91,7 @@ class Balance:
         for _ in range(_ITERATIONS if surface.feature is None else _QUICK):
             state, touch = self.seen(state, surface, foot)
             slope = float(touch.normal @ model.direction(state.link))
-            push = self._push(state.link, touch)
+            push = self.push(state.link, touch)
             out_of_balance = float(np.abs(model.springs + state.force * push).max())
             missed = self._k * abs(touch.distance + state.force / self._k)
             skewed = abs(slope) * state.force if state.sliding else 0.0
@@ -113,13 +113,12 @@ class Balance:
         """The first step, as the foot moves, by the equations at the start."""
         model = self.model
         touch = surface.touch(state.link, state.s)
-        slope = float(touch.normal @ model.direction(state.link))
-        system = self.linearised(state, touch, slope, surface.turning(state.link, touch))
+        system = self._derivatives(state, touch, surface)
         turned = system.turning @ by
         moved = system._replace(
             touch=touch._replace(distance=touch.distance + float(touch.normal @ by)),
             springs=system.springs + state.force * (system.moved @ turned),
-            slope=slope + float(turned @ model.direction(state.link)),
+            slope=system.slope + float(turned @ model.direction(state.link)),
         )
         return self._step(state, moved) or state
 
@@ -195,7 +194,7 @@ class Balance:
         found[:carry] = cross(model.axes[:carry], centre - model.anchors[:carry])
         return found
 
-    def _push(self, link: int, touch: Touch) -> Floats:
+    def push(self, link: int, touch: Touch) -> Floats:
         """How the distance of a bead changes with the joints' turns, shape (nv,) [L]."""
         model, carry = self.model, self._carriers(link)
         found = np.zeros(len(model.joint_of))

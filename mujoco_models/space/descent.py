@@ -25,7 +25,6 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from analytic.numerics.descent import barring_forces
 from analytic.problem.arrays import Booleans, Floats
-from analytic.space.problem.bodies.body import cross
 from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled
@@ -141,7 +140,7 @@ def _turns(
     inertia: float,
 ) -> tuple[Floats, Floats, float]:
     """Turns of the joints, forces of the links near by, and the inertia that it took."""
-    rows = _pushes(rest.model, near)
+    rows = np.array([rest.balance.push(one.link, one.touch) for one in near])
     distances = np.array([one.touch.distance for one in near])
     while True:
         barred = rows[held]
@@ -160,15 +159,6 @@ def _turns(
         if (forces[held] > 0).all():
             return turns + moved @ forces, forces, inertia
         held = held & (forces > 0)
-
-
-def _pushes(model: SpaceModel, near: list[_Near]) -> Floats:
-    """How the links' distances change with the joints' turns, shape (n_links, nv) [L]."""
-    normals = np.array([one.touch.normal for one in near])
-    moments = cross(np.array([one.touch.centre for one in near]), normals)
-    found = moments @ model.axes.T - normals @ cross(model.axes, model.anchors).T
-    found[model.joint_of > np.array([[one.link] for one in near])] = 0.0
-    return found
 
 
 def _pressed(model: SpaceModel, configuration: Floats, near: list[_Near], forces: Floats) -> State:

@@ -7,7 +7,6 @@ next edge the next face says where that is.
 """
 
 from collections.abc import Iterable
-from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -16,7 +15,6 @@ from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.space.balance import State
-from mujoco_models.space.forecast import Planar
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Surface
@@ -108,17 +106,10 @@ def _on(
 def _at_rest(
     rest: Rest, state: State, feature: Feature, place: Floats, foot: Floats, far: float
 ) -> Settled | None:
-    """The stable equilibrium on a feature as if it had no end."""
+    """The stable equilibrium on a face as if it had no end, or on an edge or a corner."""
     surface = Surface(rest.model, feature)
     near = place + rest.model.radius * feature.normal
-    sought = partial(_use, rest, surface, foot)
-    found = rest.settle(state, surface, foot, foot, near, far, sought)
-    return found if found is not None and found.stable else None
-
-
-def _use(rest: Rest, surface: Surface, foot: Floats, planar: Planar) -> bool:
-    """Whether a vibrissa that will rest there lands, or goes on along a face."""
-    assert surface.feature is not None
-    if surface.feature.flat:
-        return planar.stable
-    return planar.stable and surface.holds(planar.link, rest.centre(planar, foot))
+    found = rest.settle(state, surface, foot, foot, near, far)
+    if found is None or not found.stable:
+        return None
+    return found if feature.flat or found.stays else None

@@ -145,8 +145,7 @@ class SpaceModel:
         centre = self.centre(link, s)
         if self.shape.osculating is not None:
             self._put(self.shape.osculating(centre))
-        normal, distance = self._nearest(link, centre)
-        return Touch(centre, normal, distance)
+        return self.probe(link, centre)
 
     def contact(self, touch: Touch) -> Floats:
         """Where the body is touched."""

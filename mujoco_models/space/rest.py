@@ -5,7 +5,6 @@ confirms it; universal joints of the chain, which do not bend alike in all direc
 bodies have none.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -39,9 +38,9 @@ class Rest:
     def __init__(self, model: SpaceModel, tolerance: float) -> None:
         self.model, self._tolerance = model, tolerance
         self.balance = Balance(model, tolerance)
-        self._forecast = None
+        self.forecast = None
         if model.beam.law is not None:
-            self._forecast = Forecast(
+            self.forecast = Forecast(
                 model.layout, model.beam.law, model.tangent, model.radius, model.contact_stiffness
             )
 
@@ -53,9 +52,8 @@ class Rest:
         foot: Floats,
         near: Floats | None = None,
         far: float = np.inf,
-        sought: Callable[[Planar], bool] = lambda planar: True,
     ) -> Settled | None:
-        """The equilibrium to which Newton's method leads.
+        """The equilibrium to which Newton's method leads; a stable one, if that is foreseen.
 
         Its first step is one along the branch: of the linearised equations at the start.
         """
@@ -64,10 +62,7 @@ class Rest:
         if planar is None:
             along = self.balance.along(start, surface, foot - begin)
             return self._settled(along, None, surface, foot)
-        planar = self.foresee(planar, surface, foot, near, far)
-        if planar is None or not sought(planar):
-            return None
-        return self.confirm(planar, surface, foot)
+        return self._foreseen(planar, surface, foot, near, far)
 
     def follow(
         self, held: Settled, begin: Floats, foot: Floats, far: float = np.inf
@@ -76,39 +71,29 @@ class Rest:
         if held.planar is None:
             found = self.settle(held.state, held.surface, begin, foot)
         else:
-            planar = self.foresee(held.planar, held.surface, foot, held.touch.centre, far)
-            if planar is None or not planar.stable:
-                return None
-            found = self.confirm(planar, held.surface, foot)
+            found = self._foreseen(held.planar, held.surface, foot, held.touch.centre, far)
         return found if found is not None and found.stable else None
 
-    def foresee(
-        self,
-        planar: Planar,
-        surface: Surface,
-        foot: Floats,
-        near: Floats | None = None,
-        far: float = np.inf,
-    ) -> Planar | None:
-        """Where it will rest, as far as is known without MuJoCo."""
-        assert self._forecast is not None and surface.feature is not None
-        return self._forecast.rest(planar, surface.feature, foot, near, far)
-
-    def centre(self, planar: Planar, foot: Floats) -> Floats:
-        """Of the bead of what is foreseen."""
-        assert self._forecast is not None
-        return self._forecast.centre(planar, foot)
+    def _foreseen(
+        self, start: Planar, surface: Surface, foot: Floats, near: Floats | None, far: float
+    ) -> Settled | None:
+        """Where it will rest stably, as MuJoCo has it."""
+        assert self.forecast is not None and surface.feature is not None
+        planar = self.forecast.rest(start, surface.feature, foot, near, far)
+        if planar is None or not planar.stable:
+            return None
+        return self.confirm(planar, surface, foot)
 
     def confirm(self, planar: Planar, surface: Surface, foot: Floats) -> Settled | None:
         """The equilibrium by MuJoCo's own balance, next to a forecast that stays where the mesh is.
 
         What has left its face, edge or corner is nowhere to rest; it only says where it left.
         """
-        state, touch = self._bent(planar), surface.touched(self.centre(planar, foot))
+        assert self.forecast is not None
+        state, touch = self._bent(planar), surface.touched(self.forecast.centre(planar, foot))
         if not surface.holds(planar.link, touch.centre):
-            return Settled(
-                state, touch, planar.stable, surface, False, self._tangents(planar), planar
-            )
+            tangents = self._tangents(planar)
+            return Settled(state, touch, planar.stable, surface, False, tangents, planar)
         return self._settled(state, planar, surface, foot)
 
     def _settled(
@@ -163,7 +148,7 @@ class Rest:
 
     def _planar(self, state: State, surface: Surface) -> Planar | None:
         """What a forecast needs of a state in which the model is; None where there is none."""
-        forecast = self._forecast
+        forecast = self.forecast
         if forecast is None or surface.feature is None or state.force <= 0:
             return None
         force = state.force * surface.touch(state.link, state.s).normal

@@ -14,7 +14,6 @@ from analytic.numerics.walk import WalkEvent, first_clear, first_touch, first_un
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
-from mujoco_models.space.forecast import Planar
 from mujoco_models.space.hop import features_around, over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
@@ -196,14 +195,7 @@ class Walk:
     ) -> Settled | None:
         """The stable equilibrium on a face, edge or corner, if it is next to the one before."""
         near = held.touch.centre
-
-        def sought(planar: Planar) -> bool:
-            centre = self._rest.centre(planar, foot)
-            if not planar.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
-                return False
-            return surface.feature is not None and surface.holds(planar.link, centre)
-
-        found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE, sought)
+        found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE)
         if found is None or not (found.stays and found.stable):
             return None
         return found if _apart(found, held) < _STEADY else None

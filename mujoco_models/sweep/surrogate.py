@@ -25,7 +25,7 @@ class Surrogate:
         self._model, self.layout, self.obstacle = model, model.layout, model.obstacle
         self.pose = model.pose
         self.contact_stiffness = model.contact_stiffness
-        self.contact_curvature = model.contact_curvature
+        self.contact_curvature, self.radius = model.contact_curvature, model.radius
         self.stiffness = model.stiffness
         self._reach, self._moves = reach, _MOVES if follow else 0
         self._angles = np.zeros(len(self.layout.joints))

@@ -21,7 +21,7 @@ from analytic import (
     solve_sweeps,
 )
 from analytic.solver.integrals import elliptic_integrals
-from compare.explain.changes import controlled_changes
+from compare.explain.budget import controlled_changes
 from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.sweep.sweep import set_out

@@ -11,8 +11,7 @@ from rich.console import Console
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan, PlannedRun
 from compare.study.grid.study import Study
-from compare.study.work.crews import local_crew
-from compare.study.work.execute import Task, carry_out
+from compare.study.work.execute import Task, carry_out, local_crew
 from compare.study.work.perform import Result
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 

@@ -2,8 +2,8 @@
 
 from analytic import CLAMP_READINGS
 from compare.explain.budget import Budget
+from compare.explain.fit import Suspect
 from compare.explain.parts import Part
-from compare.explain.suspects import Suspect
 
 PARTS = ("discretisation", "facets", "softness", "corner", "unrest", "sensor", "extension",
          "unexplained")  # fmt: skip

@@ -13,7 +13,7 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS, Beam, Case, Readings, Sweep, named_case, solve_sweep
 from compare import Classification
-from compare.explain.changes import controlled_changes
+from compare.explain.budget import controlled_changes
 from compare.explain.motion import slower_and_finer
 from compare.explain.variations import STEP
 from mujoco_models import Motion, Settings

@@ -19,8 +19,9 @@ from analytic.space import (
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
 from compare import SpatialTolerances, assert_agreement, compare, measure_budget
 from compare.align.frames import COMPONENTS, clamp_axes, components, from_frame
-from compare.explain.in_space import budget_in_space, changes_in_space
-from compare.show.spatial_page import spatial_summary, spatial_verdict
+from compare.explain.budget import budget_in_space, changes_in_space
+from compare.show.report import summary_of
+from compare.show.spatial_page import spatial_verdict
 from mujoco_models import SpatialSettings
 from tests.compare.command import reported_again, vibrissa
 from tests.conftest import exact_sweep
@@ -60,7 +61,7 @@ def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
 def test_nothing_is_said_of_contacts_that_are_not_there(exact):
     """Neither tiles nor a table of nothing; the stations that each sweep trusts are counted."""
     found = compare(exact, changed(exact, status="lost"))
-    said = str([vars(block) for block in spatial_summary(found)])
+    said = str([vars(block) for block in summary_of(found)])
     assert "contacts apart" not in said
     assert "nan" not in said
     assert "candidate 20 lost" in found.worst.found

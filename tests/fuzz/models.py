@@ -8,7 +8,7 @@ chain, flex or cable, in which some numbers are others, or something was added. 
 what was planted, and as flags:
 
 - ``internal``: anything but a line of an `InputError`;
-- ``refused``: a line of an `InputError`, if nothing is garbled, but for a fix of what is attached;
+- ``refused``: a line of an `InputError`, if nothing is garbled;
 - ``missed``: a planted mistake that no fault names;
 - ``false``: a fault of a model in which none is planted;
 - ``left``: fixed, faults of that kind are still there;
@@ -323,7 +323,7 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
         outcome.said = str(error)
         if "\n" in outcome.said:
             outcome.flags.append("internal")
-        elif not (garbled_too or ("--write" in outcome.said and "attached" in outcome.model.ways)):
+        elif not garbled_too:
             outcome.flags.append("refused")
     except Exception as error:  # the point of this
         outcome.said, outcome.flags = f"{type(error).__name__}: {error}", ["internal"]

@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, Place, row_number
 from analytic.problem.files import as_path
-from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import read_file
 from analytic.problem.sweep_table import SweepTable, usable
 from analytic.problem.table import as_numbers, check_columns, check_words

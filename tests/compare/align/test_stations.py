@@ -195,6 +195,23 @@ def test_a_station_that_has_jumped_a_little_early_is_left_out_and_no_other():
     assert (off > 0.5).sum() == 2 and before not in early["station"].to_numpy()
 
 
+@pytest.mark.parametrize(("steps", "left_out"), [(40, True), (400, False)])
+def test_between_stations_too_far_apart_at_a_bend_nothing_is_compared(steps, left_out):
+    """The spline of a bend swings out by a tenth of what a station adds, a few stations wide."""
+    x, between = np.linspace(1.2, -0.8, steps + 1), np.linspace(1.19, -0.79, 334)
+    reference, candidate = made(x), made(between)
+    for sweep in (reference, candidate):
+        sweep.table["force_y"] += 2 * np.abs(sweep.values("foot_x") - 0.31)
+    found = paired(candidate, reference)
+    assert (found.counts["reference_coarse"] > 0) == left_out
+    table = found.table
+    off = (table["force_y_candidate"] - table["force_y_reference"]).abs()
+    assert off.max() < 1e-3 * reference.table["force_y"].abs().max()
+    near = np.abs(between - 0.31) < 4.01 * (x[0] - x[1])
+    assert found.counts["reference_coarse"] <= near.sum()
+    assert found.counts["reference_coarse"] + near[table["station"]].sum() == near.sum()
+
+
 def test_where_readings_jump_or_bend():
     x = np.linspace(1, 0, 60)
     smooth, none = np.sqrt(x + 0.02)[None], np.zeros(1, dtype=int)  # as before a snap-off

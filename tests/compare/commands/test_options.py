@@ -18,8 +18,8 @@ from compare import load_case
 from compare.commands.calibrate import KNOWN
 from compare.commands.compare import ONE, SEVERAL
 from compare.commands.inspect import FILE, SINGLE
-from compare.commands.kinds import ANY_CASE, For
 from compare.commands.main import app
+from compare.commands.options import ANY_CASE, For
 from compare.commands.reconstruct import SWEEP
 from compare.commands.study import COUNTED, HERE, ON_A_CLUSTER
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE

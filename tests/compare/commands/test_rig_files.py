@@ -10,7 +10,7 @@ import pytest
 
 from analytic import SENSED, Readings, named_case, solve_sweep
 from compare.commands.comparing import turned
-from compare.commands.rig_files import RigFiles
+from compare.commands.sweeping import RigFiles
 from compare.read.case import load_case
 from tests.compare.command import vibrissa
 from tests.compare.commands.case_files import CASE, RIG_COLUMNS, UNITS, as_a_rig

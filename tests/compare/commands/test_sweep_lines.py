@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, reconstruct
-from compare.commands.sweep_lines import note_rows, print_reconstruction, print_sweep
+from compare.commands.sweeping import note_rows, print_reconstruction, print_sweep
 from compare.sense.record import without_dropouts
 from tests.conftest import exact_sweep
 

@@ -19,8 +19,7 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
-from compare.explain.budget import Budget, budget
-from compare.explain.changes import controlled_changes
+from compare.explain.budget import Budget, budget, controlled_changes
 from compare.explain.parts import SMALL, UNRESOLVED
 from compare.explain.variations import on_polygon, variations
 from compare.simulate.budgets import has_corners, has_primitive, measure_budget

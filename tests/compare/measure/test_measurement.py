@@ -80,11 +80,11 @@ def test_a_phase_that_noise_alone_makes():
     rig = Readings(noisy.table[["foot_x", *CLAMP_READINGS]])
     found = measure(exact, rig, WINDOW)
     made = [n for n, one in found.transitions.items() if one.reference is None is not one.candidate]
-    assert found.made_by_noise() == made != []
+    assert found.unsure() == made != []
     real = measure(exact, past_a_circle(0.5), WINDOW)
     assert real.transitions["phase_b_end"].reference is None
     assert real.transitions["phase_b_end"].candidate is not None
-    assert real.made_by_noise() == []
+    assert real.unsure() == []
 
 
 @pytest.mark.parametrize("side", [0, 1])

@@ -85,7 +85,7 @@ def test_a_limit_at_which_the_contact_jumps_says_how_far_it_may_be_off(criterion
     judged = SimpleNamespace(
         criterion=np.array([0, 0, 0, *criterion]), shortfall=np.array([0.25, 0.15, 0.05, 0, 0, 0])
     )
-    at, tip, tangent = np.arange(6.0), np.arange(3, 6), np.arange(3)
+    at, tip, tangent = np.arange(6.0), np.arange(3, 6), np.arange(3)[::-1]
     place, may_be = transitions._limit(at, judged, tip, tangent)
     assert (place, may_be) == (pytest.approx(2.5 - off), pytest.approx(off, abs=1e-12))
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-from compare.show.html import html
+from compare.show.page import html
 from compare.show.plane_page import plane_document
 
 VOID = {"meta", "link", "img", "br", "hr", "input", "source"}

@@ -9,8 +9,8 @@ from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.readings import around_snap_off
-from compare.show.plane_page import plane_summary, plane_tiles
-from compare.show.report import write_report
+from compare.show.plane_page import plane_tiles
+from compare.show.report import summary_of, write_report
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page, written_page
 from tests.compare.synthetic import NOTHING
@@ -105,7 +105,7 @@ def test_nothing_is_said_of_nothing(made):
     """No table of NaN, and nothing that is alike but the three stations without contact."""
     found = compare(sweeps.exact("catenary"), made(sweeps.exact("catenary")))
     assert found.phases_alike() in (None, 3 / 60)
-    blocks = [*plane_summary(found)]
+    blocks = [*summary_of(found)]
     assert not any("nan" in str(block).lower() for block in blocks)
     assert not any("relative to the largest" in getattr(block, "caption", "") for block in blocks)
     assert not any("disagreement" in tile.name for tile in plane_tiles(found))

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from analytic import Readings
 from compare import Tolerances, compare
-from compare.explain.suspects import Suspect
-from compare.show.figures.budget_bars import bars
+from compare.explain.fit import Suspect
+from compare.show.budgets import bars
 from compare.show.page import inline_svg
 from compare.show.verdict import verdict
 from tests.compare.planted import planted

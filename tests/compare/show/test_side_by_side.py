@@ -9,7 +9,7 @@ import pytest
 from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances
 from compare.read.runs import EngineOutcome
-from compare.show.html import html
+from compare.show.page import html
 from compare.show.side_by_side import (
     SideBySide,
     error_against_time,

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from compare.show.html import html
+from compare.show.page import html
 from compare.verify import peers
 
 

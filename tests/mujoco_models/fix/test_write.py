@@ -135,6 +135,42 @@ def test_elements_that_are_lacking_are_put_in(path):
     assert len(files) == 2
 
 
+ROBOT = """\
+<mujoco>
+  <asset><model name="whisker" file="links.xml"/></asset>
+  <worldbody>
+    <frame><attach model="whisker" body="foot" prefix="left_"/></frame>
+    <body name="palm" pos="9 0 0"><attach model="whisker" body="foot" prefix="right_"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_an_attached_model_gets_a_copy_that_the_model_attaches(tmp_path):
+    """Once for both places where it is attached; its classes and its sensors are its own."""
+    own = LINKS.replace(
+        "<worldbody>", '<default><default class="thin"><geom type="capsule" size="0.01"/></default>'
+        '</default><sensor><force name="f" site="clamp" cutoff="1"/></sensor><worldbody>'
+    ).replace('name="clamp"', 'name="clamp" pos="0 0 0"')  # fmt: skip
+    (tmp_path / "links.xml").write_text(own)
+    path = tmp_path / "m.xml"
+    path.write_text(ROBOT)
+    edits = (
+        Edit("joint", (("stiffness", "2"),), (3,)),
+        Edit("geom", (("condim", "1"),), (3, 4, 5)),
+        Edit("sensor", (("cutoff", "0"),), (1,)),
+    )
+    model, (main, links) = write(path, *edits)
+    assert model.jnt_stiffness[[0, 3]].tolist() == [2, 2]
+    assert model.geom_condim.tolist() == 6 * [1]
+    assert model.sensor_cutoff.tolist() == [0, 0]
+    assert len(changed(ROBOT, main.read_text())) == 2 == ROBOT.count("attach ")
+    assert len(changed(own, links.read_text())) == 4  # of default and sensor, and of the joint
+    model = mujoco.MjModel.from_xml_path(str(path))
+    with pytest.raises(InputError, match="put <site/> into a body there"):
+        fixed(path, model, [Insert("<site/>", 1)], path.with_name("fixed.xml"))
+
+
 def test_what_mujoco_does_not_take_is_not_left_behind(path):
     with pytest.raises(InputError, match="takes the fixed model") as caught:
         write(path, Insert("<nonsense/>"))

@@ -38,7 +38,7 @@ def test_mujoco_is_at_rest_where_it_is_foreseen(beam, joints, tmp_path):
     rest, states = walked(beam, joints, tmp_path)
     random, kinds = np.random.default_rng(0), set()
     for held, foot in states:
-        planar = rest.foresee(turned(held.planar, 0.03, random), held.surface, foot)
+        planar = rest.forecast.rest(turned(held.planar, 0.03, random), held.surface.feature, foot)
         found = rest.confirm(planar, held.surface, foot)
         assert np.abs(planar.angles - held.planar.angles).max() < 1e-9
         assert np.abs(planar.side - held.planar.side).max() < 1e-9
@@ -56,7 +56,7 @@ def test_it_is_stable_where_mujocos_stiffness_is_positive(beam, joints, tmp_path
         # Newton's method does not mind saddles: from twenty times the force it finds many.
         there = foot + [0.3, 0.0, 0.3] * random.normal(size=3)
         start = turned(held.planar._replace(force=20 * held.planar.force), 0.3, random)
-        planar = rest.foresee(start, held.surface, there)
+        planar = rest.forecast.rest(start, held.surface.feature, there)
         found = planar and rest.confirm(planar, held.surface, there)
         if found:
             least = rest.softest(found, there)[0]

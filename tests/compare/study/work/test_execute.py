@@ -9,8 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from compare.study.work.crews import local_crew
-from compare.study.work.execute import Crew, carry_out
+from compare.study.work.execute import Crew, carry_out, local_crew
 from compare.study.work.perform import Result, perform_all
 from tests.compare.study.studies import EVENTS_ONLY
 
