@@ -49,8 +49,9 @@ def scatter(values: Floats) -> float:
 
 
 def rounding(values: Floats) -> float:
-    """Standard deviation of what a converter rounds off."""
-    return float(np.nanmin(np.diff(np.unique(values)), initial=np.inf)) / 12**0.5
+    """Standard deviation of what a converter rounds off; 0 of one that does not move."""
+    steps = np.diff(np.unique(values[np.isfinite(values)]))
+    return float(steps.min()) / 12**0.5 if steps.size else 0.0
 
 
 def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dict[str, float]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
+from analytic.from_clamp.noise import scatter
 from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from tests.compare.command import vibrissa
@@ -86,6 +87,19 @@ def test_a_converter_that_does_not_move_knows_its_zero_to_a_step(tmp_path):
     (one,) = usable(look_at_passes(*rig(tmp_path, rounded)))
     stated = np.array([*one.readings.provenance["zero_uncertainty"].values()])
     assert np.all(stated >= 0.99 * step[:, 0] / np.sqrt(12))
+
+
+@pytest.mark.parametrize(
+    ("values", "noise"),
+    [
+        (np.zeros(50), 0.0),
+        (np.ones(50), 1e-14),
+        (np.linspace(0, 1, 200).round(1), 0.1 / np.sqrt(12)),
+    ],
+)
+def test_what_is_rounded_off_is_noise(values, noise):
+    """Of a tenth of an interval most rows are as the one before: no noise was seen."""
+    assert scatter(values) == pytest.approx(noise)
 
 
 @pytest.mark.parametrize("share", [0.005, 0.02, 0.05])
