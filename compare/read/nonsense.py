@@ -156,4 +156,6 @@ def check_ahead(foot_x: Floats, values: Floats, name: str) -> None:
 def _jump(name: str, row: int, step: float, how: str) -> InputError:
     what = f"a jump by {step:+.4g} after row {row + 1} of {name}, {how}"
     remedy = "the clock or the stage's counter was reset: split the file there, or repeat the pass"
+    if how == "back":
+        remedy += "; where another pass begins, name the column that changes then, [passes] column"
     return InputError("foot_x", what, "going on in one direction", remedy)

@@ -34,6 +34,8 @@ def passes_summary(passes: Sequence[Pass], found: Sequence[Repeats]) -> Iterator
     yield Table("Passes: rows, and why some are not used", counted, rows, words=(0, 1, 6))
     head = ("pass", *CLAMP_READINGS)
     yield Table("Drift of the zero, over the largest reading", head, drifts)
+    if np.isnan([*passes[0].zero.values()]).all():
+        yield Text("no zero is taken off: state free_before and free_after, where nothing touches")
     yield from _not_taken_off(passes)
     if any(one.bends for one in passes):
         yield Text("the zeros drift along a curve, which is taken off; the intervals know how well")

@@ -9,6 +9,7 @@ from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solv
 from analytic.from_clamp.noise import scatter
 from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
+from compare.show.passes import passes_summary
 from tests.compare.command import vibrissa
 
 RIG = """
@@ -76,6 +77,10 @@ def test_without_a_free_stretch_a_column_has_the_zero_that_is_stated(tmp_path):
         for one in (described, read_rig(tmp_path / "rig.toml"))
     )
     np.testing.assert_allclose(stated, 2 * (read - 0.5), atol=1e-12)
+    for before, left in ((0.0, True), (0.2, False)):
+        passes = look_at_passes(*rig(tmp_path, before=before, after=0.0))
+        said = " ".join(map(str, passes_summary(passes, [])))
+        assert ("no zero is taken off: state free_before" in said) == left
 
 
 def test_a_converter_that_does_not_move_knows_its_zero_to_a_step(tmp_path):
@@ -162,7 +167,7 @@ def two_units(values):
         (saturated, (0.2, 0.2), r"force_y = .* rows of pass: it saturates"),
         (stuck, (0.2, 0.2), r"moment_z = .* over 80 rows of pass: it is stuck"),
         (jumped(250, -0.2), (0.2, 0.2), r"foot_x = a jump by -0\.2.* ahead, while"),
-        (jumped(350, 0.15), (0.2, 0.2), r"foot_x = a jump by \+0\.14.* back"),
+        (jumped(350, 0.15), (0.2, 0.2), r"foot_x = a jump by \+0\.14.* back.*\[passes\] column"),
         (without_contact, (0.2, 0.2), "pass = under load at 0 rows: .* touches no object"),
         (lambda x: x[:, ::-1], (0.2, 0.2), "pass = to the right by foot_x, .* reverse its rows"),
         (two_units, (0.2, 0.2), r"changes 0\.001\d* times between them: .* has two units"),
