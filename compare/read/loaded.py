@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analytic.from_clamp.noise import scatter
+from analytic.from_clamp.noise import rounding, scatter
 from analytic.problem.arrays import Booleans, Floats
 
 _JUMP = 0.1  # of the largest reading; more is no hum, and no step of a zero ...
@@ -58,8 +58,7 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     parts = np.array_split(np.vstack([way[here], rows[:, here]]), min(_MOST, here.sum()), axis=1)
     x, *others = np.transpose([part.mean(axis=1) for part in parts])
     y = np.array(others)
-    of_converter = [np.diff(np.unique(row)).min(initial=1.0) for row in rows]  # its step
-    least = _EXACT**2 + np.square(of_converter)[:, None] / 12
+    least = _EXACT**2 + np.square([[rounding(row)] for row in rows])
     drift = np.clip(_fitted(x[None], y)[0], -steepest, steepest)
     free = np.var(y - drift * x, axis=1, keepdims=True)
     places = np.unique(x)[:-3]

@@ -189,8 +189,9 @@ def _left(found: Calibration | FittedObject | FittedBody) -> Iterator[Text]:
         yield Text(
             "the noise is less than it was taken for: state less, the intervals are too wide"
         )
-    passes = None if isinstance(found, FittedBody) else found.passes
-    held = passes is not None and passes.alike is not None
+    if isinstance(found, FittedBody):  # whose sweeps are along lines of their own
+        return
+    held = found.passes is not None and found.passes.alike is not None
     if found.explains and found.noise.remembers.any() and not held:
         yield Text(
             "one pass, or two, do not distinguish noise that remembers from what is not as stated: "

@@ -55,16 +55,17 @@ class Measured:
     ) -> "Measured":
         """What is under load in all passes, of one rig: the noise of each is that of all."""
         each = [measured_under_load(one, carried, noise, unknowns) for one in passes]
+        pooled = {
+            name: np.sqrt(np.mean([getattr(one, name) ** 2 for one in each], axis=0))
+            for name in ("spread", "zero", "bend", "free")
+        }
         return cls(
-            np.concatenate([one.foot_x for one in each]),
-            np.concatenate([one.readings for one in each], axis=1),
-            np.sqrt(np.mean([one.spread**2 for one in each], axis=0)),
-            tuple(n for one in each for n in one.rows),
-            tuple(ends for one in each for ends in one.ends),
-            np.sqrt(np.mean([one.zero**2 for one in each], axis=0)),
-            np.sqrt(np.mean([one.bend**2 for one in each], axis=0)),
-            np.sqrt(np.mean([one.free**2 for one in each], axis=0)),
-            float(np.mean([one.vague for one in each])) / len(each),
+            foot_x=np.concatenate([one.foot_x for one in each]),
+            readings=np.concatenate([one.readings for one in each], axis=1),
+            rows=tuple(n for one in each for n in one.rows),
+            ends=tuple(ends for one in each for ends in one.ends),
+            vague=float(np.mean([one.vague for one in each])) / len(each),
+            **pooled,
         )
 
     @property
