@@ -110,13 +110,13 @@ def test_comparison_as_json(exact, simulated):
     assert found["verdict"] == "agrees"
 
 
-def test_a_reference_that_is_too_coarse_is_told_so():
+def test_a_reference_that_is_too_coarse_is_noted():
     """Past an octagon, where readings bend; one of 200 stations says nothing of its snap-off."""
     turn = 0.2 + 2 * np.pi * np.arange(8) / 8
     octagon = polygon(np.column_stack([0.4 * np.cos(turn), 0.8 + 0.4 * np.sin(turn)]))
-    for profile, stations, told in ((octagon, 61, True), (circle(1.0, (0.0, 0.5)), 200, False)):
+    for profile, stations, noted in ((octagon, 61, True), (circle(1.0, (0.0, 0.5)), 200, False)):
         case = Case(profile=profile, sweep=Sweep(stations))
         finer = solve_sweep(replace(case, sweep=Sweep(333)))
         found = compare(solve_sweep(case), finer)
         assert found.agrees and found.alignment.counts["reference_coarse"]
-        assert any("smaller steps" in one for one in found.remarks) == told
+        assert any("smaller steps" in one for one in found.remarks) == noted
