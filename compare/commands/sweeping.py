@@ -34,6 +34,7 @@ AnyReadings: TypeAlias = Readings | SpatialReadings
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa touches the object, or would lie in it",
+    "touches another": ": the vibrissa touches more than the object, or the object more than it",
     "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
     "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
     "impratio 100, a faster foot, or harder contacts in shorter steps",
