@@ -140,7 +140,6 @@ def sweep_stations(
         source,
         {**about, "unsettled": unsettled},
         lambda: {"snap_off": walk.snap_off},
-        {"foot_x": swept.foot_x},
         begun=begun,
     )
     for target in stations:

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -44,10 +45,13 @@ class AnyRecorder(ABC, Generic[Kept]):
     # the readings are made, so it may hold what is counted on the way.
     about: Mapping[str, Any]
     events: Callable[[], Any]  # what has happened so far
-    # Columns that say where the stations are, in the order in which they are passed [length].
-    places: Mapping[str, Floats]
     rows: list[dict[str, Any]] = field(default_factory=list)
     begun: float = field(default_factory=time.process_time)  # processor time [s]
+
+    @property
+    @abstractmethod
+    def places(self) -> dict[str, Floats]:
+        """Columns that say where the stations are, in the order in which they are passed."""
 
     @contextmanager
     def rescued(self, keep: Callable[[Kept], None]) -> Iterator[None]:
@@ -76,9 +80,9 @@ class AnyRecorder(ABC, Generic[Kept]):
 
     def _columns(self, first: tuple[str, ...]) -> dict[str, Any]:
         """By name, in the units of the beam; a station without numbers has NaN."""
-        given = dict.fromkeys([*first, *(name for row in self.rows for name in row)])
-        names = [name for name in given if name not in self.places]
         columns: dict[str, Any] = {n: x[: len(self.rows)] for n, x in self.places.items()}
+        given = dict.fromkeys([*first, *(name for row in self.rows for name in row)])
+        names = [name for name in given if name not in columns]
         for name, unit in zip(names, units(self.case.beam, names), strict=True):
             if name in WORDS:
                 columns[name] = [row[name] for row in self.rows]
@@ -88,10 +92,17 @@ class AnyRecorder(ABC, Generic[Kept]):
         return columns
 
 
+@dataclass
 class Recorder(AnyRecorder[Readings]):
     """Of a sweep in the plane to the left; its events are parameters of the way by name."""
 
     case: Case
+    back: bool = False  # whether the stations are passed from the last to the first
+
+    @cached_property
+    def places(self) -> dict[str, Floats]:
+        places = {"foot_x": self.case.foot_x, **self.case.way_columns}
+        return {name: x[:: -1 if self.back else 1] for name, x in places.items()}
 
     def readings(self) -> Readings:
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)

@@ -15,6 +15,7 @@ from analytic.problem.columns import (
     SECOND_CONTACT,
     STATUS_NUMBER,
 )
+from analytic.problem.contours.contour import ContourPoint
 from analytic.solver.general.states import States, Vibrissa
 
 Numbers: TypeAlias = Floats | Integers
@@ -68,52 +69,45 @@ def unloaded_columns(foot_x: Floats, tip_angle: float | Floats = np.pi / 2) -> R
 
 def to_columns(found: States, units: Units) -> ReadingColumns:
     """The readings of states at rest; NaN in their excess marks what no vibrissa reaches."""
-    alpha, xi, eta = found.point[:3]
-    sine, cosine = np.sin(alpha), np.cos(alpha)
-    vibrissa, length = found.vibrissa, found.arc_length
-    mu, radius = vibrissa.friction, vibrissa.radius
-    force, into, onward = found.force * units.force, sine, cosine
-    if np.any(mu):
-        into, onward = sine + mu * cosine, cosine - mu * sine
-    force_x, force_y = -force * into, force * onward
-    w_x, w_y = vibrissa.weight
-    if w_x or w_y:
-        force_x, force_y = force_x - w_x * units.force, force_y - w_y * units.force
+    vibrissa, (w_x, w_y) = found.vibrissa, found.vibrissa.weight
+    at = _at_contact(found.point, found.force, found.arc_length, vibrissa, units)
     columns: ReadingColumns = {
         "foot_x": found.foot_x * units.length,
-        "force_x": force_x,
-        "force_y": force_y,
+        "force_x": at["force_x"] - w_x * units.force,
+        "force_y": at["force_y"] - w_y * units.force,
         "moment_z": found.moment * units.moment,
         "phase": np.where(found.tangent, PHASE_NUMBER["tangent"], PHASE_NUMBER["tip"]),
-        "contact_angle": alpha,
-        "contact_arc_length": length * units.length,
-        "contact_x": (xi - radius * sine) * units.length,
-        "contact_y": (eta + radius * cosine) * units.length,
+        **{name: at[name] for name in CONTACT[:-1]},
         "tip_angle": found.last_angle,
         "status": np.where(
             np.isnan(found.excess), STATUS_NUMBER["unreachable"], STATUS_NUMBER["ok"]
         ),
     }
-    return columns if found.inner is None else columns | _with_inner(columns, found, units)
+    inner = found.inner
+    if inner is None:
+        return columns
+    # The contact nearer to the clamp is the first one, and the clamp holds both forces.
+    columns |= {f"second_{name}": columns[name] for name in CONTACT[:-1]}
+    columns["second_contact_force"] = found.force * units.force
+    columns["phase"] = np.full(len(inner.force), PHASE_NUMBER["tangent"])
+    first = _at_contact(inner.point, inner.force, found.arc_length - inner.apart, vibrissa, units)
+    for name in ("force_x", "force_y"):
+        first[name] = np.asarray(columns[name] + first[name])
+    return {**columns, **first}
 
 
-def _with_inner(columns: ReadingColumns, found: States, units: Units) -> ReadingColumns:
-    """The contact nearer to the clamp as the first one, and both forces."""
-    inner, vibrissa = found.inner, found.vibrissa
-    assert inner is not None
-    alpha, xi, eta = inner.point[:3]
-    sine, cosine = np.sin(alpha), np.cos(alpha)
-    mu, force = vibrissa.friction, inner.force * units.force
-    second = {f"second_{name}": columns[name] for name in CONTACT[:-1]}
-    return second | {
-        "second_contact_force": found.force * units.force,
-        "force_x": columns["force_x"] - force * (sine + mu * cosine),
-        "force_y": columns["force_y"] + force * (cosine - mu * sine),
-        "phase": np.full(len(force), PHASE_NUMBER["tangent"]),
-        "contact_angle": alpha,
-        "contact_arc_length": (found.arc_length - inner.apart) * units.length,
-        "contact_x": (xi - vibrissa.radius * sine) * units.length,
-        "contact_y": (eta + vibrissa.radius * cosine) * units.length,
+def _at_contact(
+    point: ContourPoint, force: Floats, arc_length: Floats, vibrissa: Vibrissa, units: Units
+) -> dict[str, Floats]:
+    """Where a contact is, and what of it the clamp holds."""
+    sine, cosine, mu = np.sin(point.alpha), np.cos(point.alpha), vibrissa.friction
+    return {
+        "force_x": -force * units.force * (sine + mu * cosine),
+        "force_y": force * units.force * (cosine - mu * sine),
+        "contact_angle": point.alpha,
+        "contact_arc_length": arc_length * units.length,
+        "contact_x": (point.xi - vibrissa.radius * sine) * units.length,
+        "contact_y": (point.eta + vibrissa.radius * cosine) * units.length,
     }
 
 

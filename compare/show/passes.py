@@ -86,9 +86,6 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
     count = len(found.numbers)
     of = f"chi square {found.chi_square:.3g} of {found.degrees} degrees of freedom"
     said = f"{of}, p = {found.probability:.2g}"
-    if found.too_alike:
-        less = "less than their noise and zeros would have them"
-        return f"{count} passes differ by {less} ({said}): one of these is stated too large"
     if found.consistent:
         return f"{count} passes say the same ({said})"
     farthest = f"pass {found.farthest + 1}" if names is None else names[found.farthest]

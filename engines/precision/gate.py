@@ -5,7 +5,7 @@ not the way to a balance but the balance itself.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -53,7 +53,7 @@ def gate(
     if not states:
         raise InputError("case", case.name, "with a station in contact", "let the sweep reach it")
     rows = [
-        {"evaluator": name} | _compared(one, found)
+        {"evaluator": name} | _compared(*one, found)
         for name, evaluate in evaluators.items()
         for one, found in zip(expected, evaluate(states), strict=True)
     ]
@@ -89,22 +89,8 @@ def _rms(numbers: pd.Series) -> float:
     return float(np.sqrt((numbers**2).mean()))
 
 
-@dataclass(frozen=True, eq=False)
-class _Expected:
-    """A state at rest in MuJoCo, and what float32's resolution makes of it."""
-
-    contact_stiffness: float
-    foot_x: float
-    bead: int  # that is deepest
-    depth: float
-    resolution: float
-    force: Floats
-    chance: float
-    force_error: float
-    imbalance: float
-
-
-def _expected(model: BeamModel, foot_x: float) -> _Expected:
+def _expected(model: BeamModel, foot_x: float) -> tuple[int, Floats, dict[str, float]]:
+    """The deepest bead of a state at rest, its force, and what float32's resolution makes of it."""
     contacts, stiffness = model.contacts(), model.contact_stiffness
     depth, normal = -contacts.distance, contacts.normal
     together = covariance(model, normal, contacts.touch)
@@ -116,32 +102,27 @@ def _expected(model: BeamModel, foot_x: float) -> _Expected:
     carried = np.arange(levers.shape[1]) <= contacts.link[:, None]
     moments = np.einsum("ij,ik,jk->k", forces, *2 * [carried * levers[:, :, 0]])
     deepest = int(np.argmax(depth))
-    return _Expected(
-        contact_stiffness=stiffness,
-        foot_x=foot_x,
-        bead=int(contacts.touch[deepest]),
-        depth=float(depth[deepest]),
-        resolution=float(deviation[deepest]),
-        force=stiffness * np.maximum(depth, 0) @ normal,
-        chance=chance_of_loss(depth, together),
-        force_error=float(np.sqrt((forces * (normal @ normal.T)).sum())),
-        imbalance=float(np.sqrt(moments.max())),
-    )
+    force = stiffness * np.maximum(depth, 0) @ normal
+    row = {
+        "contact_stiffness": stiffness,
+        "foot_x": foot_x,
+        "load": float(np.hypot(*force)),
+        "depth": float(depth[deepest]),
+        "resolution": float(deviation[deepest]),
+        "chance": chance_of_loss(depth, together),
+        "predicted_force_error": float(np.sqrt((forces * (normal @ normal.T)).sum())),
+        "predicted_imbalance": float(np.sqrt(moments.max())),
+    }
+    return int(contacts.touch[deepest]), force, row
 
 
-def _compared(one: _Expected, found: Evaluated) -> dict[str, float | bool]:
-    seen = -found.distance[one.bead]
-    return {
-        "contact_stiffness": one.contact_stiffness,
-        "foot_x": one.foot_x,
-        "load": float(np.hypot(*one.force)),
-        "depth": one.depth,
-        "resolution": one.resolution,
-        "depth_error": float(seen - one.depth) if np.isfinite(seen) else np.nan,
+def _compared(
+    bead: int, force: Floats, row: dict[str, float], found: Evaluated
+) -> dict[str, float | bool]:
+    seen = -found.distance[bead]
+    return row | {
+        "depth_error": float(seen - row["depth"]) if np.isfinite(seen) else np.nan,
         "lost": not (found.distance < 0).any(),
-        "chance": one.chance,
-        "force_error": float(np.hypot(*(found.force - one.force))),
-        "predicted_force_error": one.force_error,
+        "force_error": float(np.hypot(*(found.force - force))),
         "imbalance": found.imbalance,
-        "predicted_imbalance": one.imbalance,
     }

@@ -66,14 +66,15 @@ class MovingModel(SteppedModel):
         # Of foot_x, foot_y and the angle those that change.
         self._driven = np.flatnonzero([np.ptp(x) > 0 for x in case.poses.at(case.way)])
         compiled = _spec(beam, motion, obstacles, case, self._pose, self._driven).compile()
-        implicit = motion.solref is None and motion.integrator == "discrete"
-        label = "; ".join(obstacle.label for obstacle in self._obstacles)
-        super().__init__(compiled, label, 1.0, follows_inertia=implicit)
+        super().__init__(compiled, "; ".join(obstacle.label for obstacle in self._obstacles))
         links = len(beam.layout.joints)
         corners = Corners.of_all([obstacle.corners for obstacle in self._obstacles])
         self._surface = Surface.of(self.model, links, corners, case.radius)
         self._object_of = self._surface.objects(self.model, obstacles)
-        self._set_contacts(motion)
+        self._is_object = ~self._surface.moves
+        geoms = np.concatenate([self._surface.beads, self._surface.sides])
+        self._set_contacts(motion, geoms)
+        self.model.geom_gap[geoms] = 0  # a contact that carries no force costs time
         # Runge and Kutta's method looks for contacts on the way of a step, too.
         upright = all(obstacle.upright for obstacle in self._obstacles)
         self._leaves_out = upright and motion.integrator != "rk4"
@@ -100,18 +101,6 @@ class MovingModel(SteppedModel):
             return np.asarray(data.qfrc_passive - data.qfrc_bias)[count:]
 
         data.qpos[count:] = hang(model, beam, float(self._pose.angle), imbalance)
-
-    def _set_contacts(self, motion: Motion) -> None:
-        """As `BeamModel` does, or MuJoCo's own parameters."""
-        model = self.model
-        geoms = np.concatenate([self._surface.beads, self._surface.sides])
-        self._is_mine = np.isin(np.arange(model.ngeom), geoms)
-        self._is_object = ~self._surface.moves
-        self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
-        if motion.solref is not None:
-            model.geom_solref[geoms] = motion.solref
-        model.geom_gap[geoms] = 0  # a contact that carries no force costs time
-        self._rub(motion, geoms)
 
     @property
     def p(self) -> float:
@@ -215,11 +204,7 @@ class MovingModel(SteppedModel):
 
     def _push(self, which: Booleans) -> float:
         """The force of some contacts along their normals."""
-        wrench, total = np.zeros(6), 0.0
-        for i in np.flatnonzero(which).tolist():
-            mujoco.mj_contactForce(self.model, self.data, i, wrench)
-            total += wrench[0]
-        return total
+        return float(self._forces(np.flatnonzero(which).tolist())[:, 0].sum())
 
     def kinetic_share(self) -> float:
         """Kinetic energy, seen from the clamp, over kinetic and elastic energy."""

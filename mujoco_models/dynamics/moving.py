@@ -1,6 +1,7 @@
 """A model in motion, ours or a user's: its steps, its time, and what its contacts take."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -28,12 +29,11 @@ class SteppedModel(ABC):
     _is_mine: Booleans  # which geoms are the vibrissa's
     _is_object: Booleans  # which are the object's
 
-    def __init__(
-        self, model: mujoco.MjModel, label: str, period: float, follows_inertia: bool
-    ) -> None:
+    _follows_inertia = False  # whether contacts have their stiffness by `_follow_inertia`
+
+    def __init__(self, model: mujoco.MjModel, label: str, period: float = 1.0) -> None:
         self.model, self.data, self.label = model, mujoco.MjData(model), label
         self._period = period  # T1 in the model's unit of time
-        self._follows_inertia = follows_inertia
         # Of the state that is reported: MuJoCo's sensors are of the beginning of a step [T1].
         self.time = 0.0
 
@@ -93,14 +93,19 @@ class SteppedModel(ABC):
         moves = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0] > 0
         stiffen(self.model, geoms[moves], stiffness, impedance)
 
-    def _rub(self, motion: Motion, geoms: Integers) -> None:
-        """Give the vibrissa's geoms friction.
+    def _set_contacts(self, motion: Motion, geoms: Integers) -> None:
+        """Give the vibrissa's geoms the stiffness that is stated, or MuJoCo's own, and friction.
 
         Raise InputError for a step in which MuJoCo's friction overshoots: it accelerates a contact
         that slides at v by -b v, as far as its cone lets it, also with the integrator that treats
         springs and normals implicitly. With b times the step of 7, the tip flies off and comes back
         for ever.
         """
+        self._is_mine = np.isin(np.arange(self.model.ngeom), geoms)
+        self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
+        self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
+        if motion.solref is not None:
+            self.model.geom_solref[geoms] = motion.solref
         if not motion.friction:
             return
         stiffness, damping = self.model.geom_solref[geoms].T
@@ -116,6 +121,13 @@ class SteppedModel(ABC):
             )
         self.model.geom_condim[geoms] = 3
         self.model.geom_friction[geoms, 0] = motion.friction
+
+    def _forces(self, contacts: Sequence[int]) -> Floats:
+        """Of contacts, along the normal and to two sides, shape (n, 3)."""
+        wrenches = np.zeros((len(contacts), 6))
+        for i, wrench in zip(contacts, wrenches, strict=True):
+            mujoco.mj_contactForce(self.model, self.data, i, wrench)
+        return wrenches[:, :3]
 
     def _creeps(self, speed: float) -> bool:
         """Whether a contact slides, and MuJoCo's friction is less than its coefficient says.

@@ -173,14 +173,13 @@ class Passes(Drive):
             "motion": asdict(motion),
             "obstacle": self._model.label,
         }
-        places = {"foot_x": case.foot_x, **case.way_columns}
         recorder = Recorder(
             case,
             self._source,
             about,
             lambda: self._events(record, turn_at),
-            {name: x[:: -1 if back else 1] for name, x in places.items()},
             record.rows,
+            back=back,
         )
         readings = self.recorded(recorder, record, advance, keep, back)
         self._let_go = record.contact.last is not None

@@ -46,7 +46,7 @@ class _Written(SteppedModel):
 
     def __init__(self, whisker: Whisker) -> None:
         read = compiled(mujoco.MjSpec.from_string(whisker.xml()))
-        super().__init__(read, "mesh", whisker.period, follows_inertia=False)
+        super().__init__(read, "mesh", whisker.period)
         self._unit, self._beam = whisker.case.beam.length / whisker.period, whisker.case.beam
         self._foot = self.model.body(PREFIX + FOOT).id
         mujoco.mj_forward(self.model, self.data)

@@ -45,9 +45,9 @@ def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Floats:
     carries = contact.efc_address >= 0  # others carry nothing
     force = data.efc_force[contact.efc_address[carries]]
     force = np.where(moves[contact.geom[carries, 1]], force, -force)
-    outward = contact.frame[carries, :3].T
-    moment = cross((contact.pos[carries] - foot).T, outward)
-    return np.array([-outward @ force, -moment @ force])
+    outward = contact.frame[carries, :3]
+    moment = cross(contact.pos[carries] - foot, outward)
+    return np.array([-force @ outward, -force @ moment])
 
 
 def discrepancy(

@@ -104,19 +104,15 @@ class BeamModel(Balance):
         mujoco.mj_flex(model, data)
         self._search(model, data, self.joint_positions())
         if len(self._surface.sides) and data.ncon:
-            self._fuse()
+            # Left out of the balance are contacts that only repeat another one.
+            self._sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
+            data.contact.exclude[self._sides.fused(data, self._surface)] = FUSED
         mujoco.mj_makeConstraint(model, data)
         mujoco.mj_fwdVelocity(model, data)
         data.qacc[:] = 0
         mujoco.mj_invConstraint(model, data)
         mujoco.mj_rnePostConstraint(model, data)
         mujoco.mj_sensorAcc(model, data)
-
-    def _fuse(self) -> None:
-        """Leave out of MuJoCo's balance the contacts that only repeat another one."""
-        data = self.data
-        self._sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
-        data.contact.exclude[self._sides.fused(data, self._surface)] = FUSED
 
     def relieved(self, rounding: float = ROUNDING) -> Floats:
         """Moment out of balance at each joint, but for what rounding of depths makes of it.

@@ -41,6 +41,6 @@ def hang(
 
 def holding(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, bodies: Booleans) -> Floats:
     """Force and moment at the foot that hold the weight of bodies, shape (2, 3)."""
-    weight = np.outer(model.opt.gravity, model.body_mass[bodies])
-    moment = cross((data.xipos[bodies] - foot).T, weight)
-    return np.array([-weight.sum(axis=1), -moment.sum(axis=1)])
+    weight = np.outer(model.body_mass[bodies], model.opt.gravity)
+    moment = cross(data.xipos[bodies] - foot, weight)
+    return np.array([-weight.sum(axis=0), -moment.sum(axis=0)])

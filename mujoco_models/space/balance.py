@@ -18,8 +18,8 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import cross
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.surface import Surface
 

@@ -17,7 +17,6 @@ from analytic.problem.errors import InputError
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
-    FOOT,
     FORCE,
     FRICTION,
     MOMENT,
@@ -27,8 +26,7 @@ from analytic.space.problem.readings import (
 from analytic.space.problem.recorder import SpatialRecorder
 from mujoco_models.beams.kinds import build_spatial
 from mujoco_models.beams.links import link_name
-from mujoco_models.beams.protocol import FOOT as FOOT_BODY
-from mujoco_models.beams.protocol import SpatialBeam
+from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.dynamics.model import give_mass, set_options
 from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
 from mujoco_models.dynamics.record import StationMeans
@@ -64,20 +62,15 @@ class MovingSpace(SteppedModel):
         _assemble(spec, len(joints), case.path.clamp_tangent, begin, way.onward(0.0), before)
         give_mass(spec, beam.layout, motion)
         set_options(spec, motion)
-        implicit = motion.solref is None and motion.integrator == "discrete"
-        super().__init__(compiled(spec), shape.label, 1.0, follows_inertia=implicit)
+        super().__init__(compiled(spec), shape.label)
         model = self.model
         self._begins, self._ends = joints, np.append(joints[1:], 1.0)
         self._links = np.array([model.body(link_name(i)).id for i in range(len(joints))])
         self._sides = np.array([model.geom(f"side{i}").id for i in range(len(joints))])
-        self._is_mine = np.isin(np.arange(model.ngeom), self._sides)
         self._is_object = np.arange(model.ngeom) == model.geom(GEOM).id
         self._start = before
-        self._foot, self._site = model.body(FOOT_BODY).id, model.site("clamp").id
-        self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
-        if motion.solref is not None:
-            model.geom_solref[self._sides] = motion.solref
-        self._rub(motion, self._sides)
+        self._foot, self._site = model.body(FOOT).id, model.site("clamp").id
+        self._set_contacts(motion, self._sides)
         mujoco.mj_forward(model, self.data)
 
     @property
@@ -98,28 +91,19 @@ class MovingSpace(SteppedModel):
     @property
     def touches(self) -> bool:
         """Whether a contact is loaded."""
-        return len(self._loaded()[1]) > 0
-
-    def _loaded(self) -> tuple[Any, Floats]:
-        """Which contacts carry force, and their forces along the normal and two sides."""
-        force = np.zeros(6)
-        which, found = [], []
-        for i in range(self.data.ncon):
-            mujoco.mj_contactForce(self.model, self.data, i, force)
-            if force[0] > 0:
-                which.append(i)
-                found.append(force[:3].copy())
-        return which, np.array(found).reshape(-1, 3)
+        return bool((self._forces(range(self.data.ncon))[:, 0] > 0).any())
 
     def state(self, speed: float) -> dict[str, Any]:
         """Contact of the last step, dimensionless: of several the mean by their forces."""
-        which, forces = self._loaded()
+        forces = self._forces(range(self.data.ncon))
+        which = np.flatnonzero(forces[:, 0] > 0)
         names = (*CONTACT_POINT, *NORMAL, *FRICTION, "contact_arc_length", "penetration")
         row: dict[str, Any] = dict.fromkeys(names, np.nan)
         row |= {"phase": "free", "status": "ok"}
-        if not which:
+        if not len(which):
             return row
-        contact, weights = self.data.contact, forces[:, 0] / forces[:, 0].sum()
+        contact, forces = self.data.contact, forces[which]
+        weights = forces[:, 0] / forces[:, 0].sum()
         frames = contact.frame[which].reshape(-1, 3, 3)
         mine = self._is_mine[contact.geom[which, 1]]
         frames = np.where(mine[:, None, None], frames, -frames)  # from the body to the vibrissa
@@ -158,8 +142,7 @@ def run_space_motion(
     require_radius(case.beam.radius)
     motion = replace(motion, friction=case.friction if motion.friction is None else motion.friction)
     _check(case, motion, settings)
-    travel, length = case.path.travel, case.beam.length
-    record = StationMeans(-travel / length, motion.average, (*FORCE, *MOMENT))
+    record = StationMeans(-case.path.travel / case.beam.length, motion.average, (*FORCE, *MOMENT))
     model = MovingSpace(case, build_spatial(settings), settings, motion, start_of(record, motion))
     about = {
         "engine": engine(),
@@ -167,14 +150,13 @@ def run_space_motion(
         "motion": asdict(motion),
         "obstacle": model.label,
     }
-    places = {"travel": travel, **dict(zip(FOOT, case.path.at(travel).T, strict=True))}
     source = f"mujoco {settings.beam} in motion"
 
     def events() -> list[WalkEvent]:
         both = ("touch", record.contact.first), ("slip-off", record.contact.last)
         return [WalkEvent(kind, -at) for kind, at in both if at is not None]
 
-    recorder = SpatialRecorder(case, source, about, events, places, record.rows)
+    recorder = SpatialRecorder(case, source, about, events, record.rows)
     return Drive(model, motion).recorded(recorder, record, advance, keep)
 
 
@@ -197,7 +179,7 @@ def _assemble(
     """Sides that touch, sensors, and a carriage along the way."""
     for side in stand(spec, links, tangent):
         side.conaffinity = side.condim = side.priority = 1
-    foot = spec.body(FOOT_BODY)
+    foot = spec.body(FOOT)
     foot.pos = begin - before * onward
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, foot.quat)

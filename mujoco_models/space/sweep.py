@@ -11,7 +11,6 @@ from analytic.problem.arrays import Floats
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
-    FOOT,
     FORCE,
     MOMENT,
     NORMAL,
@@ -50,15 +49,13 @@ def run_space(
     way, rest = case.way, Rest(model, settings.tolerance)
     walk = Walk(model, rest, way.foot, way.marks)
     about = {"engine": engine(), "settings": asdict(settings), "obstacle": model.shape.label}
-    travel = case.path.travel
-    places = {"travel": travel, **dict(zip(FOOT, case.path.at(travel).T, strict=True))}
     source = f"mujoco {settings.beam}"
-    recorder = SpatialRecorder(case, source, about, lambda: walk.events, places, begun=begun)
+    recorder = SpatialRecorder(case, source, about, lambda: walk.events, begun=begun)
 
     def row_at(travel: float) -> dict[str, Any]:
         return _row(rest, walk.go_to(travel), way.foot(travel), settings.tolerance)
 
-    return visit(travel / case.beam.length, row_at, recorder, advance, keep)
+    return visit(case.path.travel / case.beam.length, row_at, recorder, advance, keep)
 
 
 def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:

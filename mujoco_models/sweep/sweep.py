@@ -48,8 +48,7 @@ def follow(
     """Go to all stations, one after the other."""
     doubts: dict[str, int] = {}
     about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
-    places = {"foot_x": case.foot_x, **case.way_columns}
-    recorder = Recorder(case, source, about, lambda: walk.events, places, begun=begun)
+    recorder = Recorder(case, source, about, lambda: walk.events, begun=begun)
 
     def row_at(p: float) -> dict[str, Any]:
         walk.go_to(p)

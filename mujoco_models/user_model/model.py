@@ -5,7 +5,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
@@ -51,8 +51,7 @@ class UserModelInMotion(SteppedModel):
         self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
         ours = own.contact == "ours"
         model = self._with_object(own, obstacle)
-        implicit = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
-        super().__init__(model, obstacle.label, measured.period, ours and implicit)
+        super().__init__(model, obstacle.label, measured.period)
         self._foot = self._parts.foot
         place, turn = self._pose(held.data)
         self._clamp = turn.T @ (held.clamp - place)
@@ -71,6 +70,7 @@ class UserModelInMotion(SteppedModel):
             )  # fmt: skip
         if ours:  # frictionless, and as stiff at every geom
             self._set_stiffness(motion.stiffness * beam.base_rigidity / beam.length**3, IMPEDANCE)
+            self._follows_inertia = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
             self.model.geom_condim[self._is_mine] = 1
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         self._dofs = held.dofs
@@ -174,18 +174,14 @@ class UserModelInMotion(SteppedModel):
     @property
     def touches(self) -> bool:
         """Whether a contact of vibrissa and object is loaded."""
-        return bool(self._loaded())
+        return len(self._loaded()[0]) > 0
 
-    def _loaded(self) -> list[tuple[int, float]]:
+    def _loaded(self) -> tuple[Integers, Floats]:
         """The contacts of vibrissa and object that carry a force, and how much."""
-        wrench, found = np.zeros(6), []
         met = (self.data.contact.geom == self._object).any(axis=1)
-        for i in np.flatnonzero(met).tolist():
-            if self._skin.has(i):
-                mujoco.mj_contactForce(self.model, self.data, i, wrench)
-                if wrench[0] > 0:
-                    found.append((i, float(wrench[0])))
-        return found
+        on_skin = [i for i in np.flatnonzero(met).tolist() if self._skin.has(i)]
+        forces = self._forces(on_skin)[:, 0]
+        return np.array(on_skin, dtype=int)[forces > 0], forces[forces > 0]
 
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""
@@ -197,10 +193,9 @@ class UserModelInMotion(SteppedModel):
         }
 
     def _touched(self) -> dict[str, Any]:
-        loaded = self._loaded()
-        if not loaded:
+        numbers, forces = self._loaded()
+        if not len(numbers):
             return {"phase": "free", **NOWHERE, "penetration": 0.0}
-        numbers, forces = np.array([i for i, _ in loaded]), np.array([f for _, f in loaded])
         weight = forces / forces.sum()
         contact, unit = self.data.contact, self._beam.length
         place = weight @ contact.pos[numbers]

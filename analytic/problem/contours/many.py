@@ -106,6 +106,9 @@ def _tuple(*parts: object) -> tuple[object, ...]:
     return parts
 
 
+def _profile(*parts: object) -> Profile:
+    return unchecked(**dict(zip(_CURVES, parts, strict=True)))
+
+
 _FAMILIES = tuple(f"{__package__}.{name}" for name in ("families", "profile"))
 _CURVES = ("xi", "eta", "alpha_range", "radius_of_curvature", "distance")
-_profile = partial(unchecked, _CURVES)

@@ -1,8 +1,6 @@
 """A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
 
-from collections.abc import Sequence
-from copy import copy
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
 
@@ -142,10 +140,7 @@ class Profile(Contour):
 
     def _changed(self, **parts: object) -> "Profile":
         """With other parts, made of those of a checked contour: they are not checked again."""
-        changed = copy(self)
-        for name, part in parts.items():
-            object.__setattr__(changed, name, part)
-        return changed
+        return unchecked(**self.__dict__ | parts)
 
     def _on(self, alpha: Floats) -> Floats:
         low, high = self.alpha_range
@@ -188,16 +183,17 @@ class Curve(Protocol):
 
 def of_curve(curve: Curve, steepest: float, label: str, kinks: tuple[float, ...] = ()) -> Profile:
     """A contour up to a slope angle on either side, not searched for waves."""
-    parts = curve.xi, curve.eta, (-steepest, steepest), curve.radius, label
-    check_convex(*parts, known=True)
-    return unchecked(tuple(part.name for part in fields(Profile)), *parts, kinks, 0.0)
+    xi, eta, radius, ends = curve.xi, curve.eta, curve.radius, (-steepest, steepest)
+    check_convex(xi, eta, ends, radius, label, known=True)
+    return unchecked(
+        xi=xi, eta=eta, alpha_range=ends, radius_of_curvature=radius, label=label, kinks=kinks
+    )
 
 
-def unchecked(names: Sequence[str], *parts: object) -> Profile:
+def unchecked(**parts: object) -> Profile:
     """A contour of parts that are known to be right, or of arrays that stand for numbers."""
     found = object.__new__(Profile)
-    for name, part in zip(names, parts, strict=True):
-        object.__setattr__(found, name, part)
+    found.__dict__.update(parts)
     return found
 
 

@@ -285,7 +285,7 @@ def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) 
 
 def _with_turns(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     """The points, and those between where foot position or contact's arc length are least."""
-    for rate in (_p_rate, _excess_rate):
+    for rate in (lambda at: at.rate, lambda at: float(at.direction[2]) if at.z[2] < 0 else 0.0):
         found = points[:1]
         for begin, end in pairwise(points):
             if rate(begin) < 0 < rate(end) and not _are_kink(begin, end):
@@ -301,11 +301,3 @@ def _are_kink(begin: Point, end: Point) -> bool:
     """Whether two points are the sides of a kink, between which there is nothing to search."""
     apart, size = np.abs(end.z - begin.z).max(), np.abs(end.z).max()
     return bool(apart <= _ROUNDING * size)
-
-
-def _p_rate(point: Point) -> float:
-    return point.rate
-
-
-def _excess_rate(point: Point) -> float:
-    return float(point.direction[2]) if point.z[2] < 0 else 0.0

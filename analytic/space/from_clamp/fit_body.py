@@ -1,6 +1,6 @@
 """The body as a whole: that of a family which explains the clamp's six components best."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,11 +15,10 @@ from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.errors import InputError, require
-from analytic.problem.support import require_plain
+from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
-from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
-from analytic.space.from_clamp.reconstruct import ClampInSpace
+from analytic.space.from_clamp.noise import component_noise, felt, over_units
+from analytic.space.from_clamp.reconstruct import ClampInSpace, of_one_vibrissa
 from analytic.space.problem.bodies.body import Body, across
 from analytic.space.problem.readings import SpatialReadings
 
@@ -86,18 +85,13 @@ class _Contacts(NamedTuple):
     sides: Floats  # two unit vectors across the normal, shape (n, 2, 3)
     spread: Floats  # standard deviation of the six components, shape (6,)
 
-    @property
-    def readings(self) -> Floats:
-        """Force and moment, shape (n, 6)."""
-        return np.hstack([self.clamp.force, self.clamp.moment])
-
     def constraints(self, readings: Floats, family: Family, numbers: Floats) -> Floats:
         """What vanishes if a vibrissa has such readings on such a body, shape (n, 6).
 
         The contact is on the surface, the force along its normal, the contact at the tip or before
         it without a moment, and no moment is along the clamp's tangent or the force.
         """
-        clamp = self.clamp._replace(force=readings[:, :3], moment=readings[:, 3:])
+        clamp = self.clamp.feeling(readings)
         found = clamp.contacts()
         points, normals = found[:3].T, found[3:6].T
         height, expected = family.surface(numbers, points)
@@ -113,17 +107,10 @@ class _Contacts(NamedTuple):
         From readings near them: shapes (n, 6) and (n, 6, k).
         """
         now = self.constraints(near, family, numbers)
-        by_reading = np.empty((len(near), 6, 6))
-        for i, size in enumerate(_STEP * np.maximum(np.abs(near).max(axis=0), _STEP)):
-            step = size * np.eye(6)[i]
-            ahead, behind = (self.constraints(near + s, family, numbers) for s in (step, -step))
-            by_reading[:, :, i] = (ahead - behind) / (2 * size)
-        by_number = np.empty((len(near), 6, len(numbers)))
-        for i, step in enumerate(_STEP * np.eye(len(numbers))):
-            ahead, behind = (
-                self.constraints(near, family, numbers + s) for s in (step, -step)
-            )  # fmt: skip
-            by_number[:, :, i] = (ahead - behind) / (2 * _STEP)
+        sizes = _STEP * np.maximum(np.abs(near).max(axis=0), _STEP)
+        by_reading = _slopes(lambda step: self.constraints(near + step, family, numbers), sizes)
+        sizes = np.full(len(numbers), _STEP)
+        by_number = _slopes(lambda step: self.constraints(near, family, numbers + step), sizes)
         moved = np.linalg.solve(by_reading, np.concatenate([now[:, :, None], by_number], axis=2))
         return near - moved[:, :, 0], -moved[:, :, 1:]
 
@@ -163,14 +150,7 @@ def fit_body(
         the readings do not determine such a body; with ``"auto"`` if no family explains them.
     """
     check_family(family, BODY_FAMILIES)
-    sweeps = list(readings) if isinstance(readings, Sequence) else [readings]
-    for one in sweeps:
-        require("readings", one, SpatialReadings, "as read_space gives them")
-        require_plain("the fit of a body", one.beam)
-        if one.beam != sweeps[0].beam:
-            raise InputError(
-                "readings", "of different vibrissae", "of one", "fit each on its own"
-            )  # fmt: skip
+    sweeps = of_one_vibrissa(readings)
     passes = [_contacts(one, noise) for one in sweeps]
     fewest = min(len(one.tip) for one in passes)
     if fewest < _FEWEST:
@@ -191,10 +171,8 @@ def fit_body(
 
 def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _Contacts:
     """The stations of a sweep whose contact is clearly at the tip or clearly before it."""
-    beam = readings.beam
-    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
     seen = component_noise(readings, noise)
-    spread = np.array([seen[name] for name in COMPONENTS]) / units
+    spread = over_units(seen, readings.beam)
     clamp = ClampInSpace.of(readings)
     force = np.linalg.norm(clamp.force, axis=1)
     loaded = felt(readings, seen)
@@ -205,11 +183,9 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     largest = [np.abs(part).max(initial=0.0) for part in (clamp.force, clamp.moment)]
     spread = np.maximum(spread, _LEAST * np.repeat(largest, 3))
     found = clamp.contacts()
-    components = np.hstack([clamp.force, clamp.moment])
     variance = np.zeros((2, len(on)))
     for i, size in enumerate(spread):
-        moved = components + size * np.eye(6)[i]
-        beside = clamp._replace(force=moved[:, :3], moment=moved[:, 3:]).contacts()
+        beside = clamp.feeling(clamp.components + size * np.eye(6)[i]).contacts()
         variance += (beside[6:] - found[6:]) ** 2
     reach, release = found[6:]
     before = reach < 1 - _CLEAR * np.sqrt(variance[0])
@@ -232,9 +208,11 @@ def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
 def _fitted(
     passes: Sequence[_Contacts], family: Family, numbers: Floats, length: float, stated: bool
 ) -> FittedBody:
-    near = [one.readings for one in passes]
+    near = [one.clamp.components for one in passes]
     measured = np.concatenate(near)
-    over = np.concatenate([np.broadcast_to(one.spread, one.readings.shape) for one in passes])
+    over = np.concatenate(
+        [np.broadcast_to(one.spread, one.clamp.components.shape) for one in passes]
+    )
 
     def expected() -> tuple[Floats, Floats]:
         each = [
@@ -303,18 +281,24 @@ def _estimates(
 ) -> dict[str, Estimate]:
     """What is reported of the body, with intervals, in the unit of the readings."""
     found = {}
-    for name, value in family.reported(numbers).items():
-        slopes = [
-            (family.reported(numbers + step)[name] - family.reported(numbers - step)[name])
-            / (2 * _STEP)
-            for step in _STEP * np.eye(len(numbers))
-        ]
-        half = DOUBLE_SIDED_95 * float(np.sqrt(slopes @ covariance @ np.array(slopes)))
+    slopes = _slopes(
+        lambda step: np.array([*family.reported(numbers + step).values()]),
+        np.full(len(numbers), _STEP),
+    )
+    for (name, value), slope in zip(family.reported(numbers).items(), slopes, strict=True):
+        half = DOUBLE_SIDED_95 * float(np.sqrt(slope @ covariance @ slope))
         if not half < _KNOWN_TO:
             raise _undetermined(family)
         unit = 1.0 if name.startswith("axis") else length
         found[name] = Estimate(*(unit * x for x in (value, value - half, value + half)))
     return found
+
+
+def _slopes(function: Callable[[Floats], Floats], sizes: Floats) -> Floats:
+    """Derivatives by central differences, the last axis by what the steps are along."""
+    steps = zip(np.diag(sizes), sizes, strict=True)
+    changes = [(function(step) - function(-step)) / (2 * size) for step, size in steps]
+    return np.stack(changes, axis=-1)
 
 
 def _undetermined(family: Family) -> InputError:

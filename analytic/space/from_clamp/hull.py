@@ -9,11 +9,10 @@ import numpy as np
 from analytic.from_clamp.contact import LONGEST
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, covering
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError
 from analytic.problem.shown import Shown
-from analytic.problem.support import require_plain
 from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
-from analytic.space.from_clamp.reconstruct import ClampInSpace, contacts_moved
+from analytic.space.from_clamp.reconstruct import ClampInSpace, contacts_moved, of_one_vibrissa
 from analytic.space.problem.bodies.polyhedron import Polyhedron, polyhedron
 from analytic.space.problem.readings import SpatialReadings
 
@@ -64,7 +63,8 @@ class ConvexBand(Shown):
     @property
     def seen(self) -> float:
         """The share of the inner body's surface above which contacts end the outer one."""
-        areas = _areas(self.inner)
+        one, other, third = self.inner.corners.swapaxes(0, 1)
+        areas = np.linalg.norm(np.cross(other - one, third - one), axis=1)
         return float(areas[np.isfinite(self.gaps)].sum() / areas.sum())
 
     @property
@@ -131,14 +131,7 @@ def convex_band(
         If there are too few contacts, they are in a plane or noise may put them there, or the
         vibrissa is not straight and uniform.
     """
-    sweeps = list(readings) if isinstance(readings, Sequence) else [readings]
-    for one in sweeps:
-        require("readings", one, SpatialReadings, "as read_space gives them")
-        require_plain("the fit of a body", one.beam)
-        if one.beam != sweeps[0].beam:
-            raise InputError(
-                "readings", "of different vibrissae", "of one", "fit each on its own"
-            )  # fmt: skip
+    sweeps = of_one_vibrissa(readings)
     parts = [_touched(one, noise, len(sweeps)) for one in sweeps]
     every = _Touched(*(np.concatenate(values) for values in zip(*parts, strict=True)))
     if len(every.points) < _FEWEST:
@@ -275,8 +268,3 @@ def _consistent(known: _Touched) -> bool:
         if (apart @ normal > allowed).any():
             return False
     return True
-
-
-def _areas(body: Polyhedron) -> Floats:
-    one, other, third = body.corners.swapaxes(0, 1)
-    return np.asarray(np.linalg.norm(np.cross(other - one, third - one), axis=1) / 2)

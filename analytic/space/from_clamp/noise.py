@@ -6,7 +6,8 @@ import numpy as np
 
 from analytic.from_clamp.contact import UNLOADED
 from analytic.from_clamp.noise import checked_noise, scatter
-from analytic.problem.arrays import Booleans
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.beam import Beam
 from analytic.space.problem.readings import FORCE, MOMENT, SpatialReadings
 
 COMPONENTS = (*FORCE, *MOMENT)
@@ -36,6 +37,12 @@ def component_noise(
         name: max(float(given.get(name, 0.0)), share * float(size))
         for name, size in zip(COMPONENTS, seen, strict=True)
     }
+
+
+def over_units(noise: Mapping[str, float], beam: Beam) -> Floats:
+    """Those of the six components, dimensionless; nothing of what is not there."""
+    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
+    return np.asarray([noise.get(name, 0.0) for name in COMPONENTS] / units)
 
 
 def least_force(readings: SpatialReadings, noise: Mapping[str, float]) -> float:

@@ -1,6 +1,6 @@
 """The body from the clamp's six components, in closed form."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +9,9 @@ import pandas as pd
 from analytic.from_clamp.contact import LONGEST, contact_bent_right
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, covering
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.errors import InputError, require
 from analytic.problem.support import require_plain
-from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
+from analytic.space.from_clamp.noise import component_noise, felt, over_units
 from analytic.space.problem.readings import (
     CONTACT_POINT,
     FOOT,
@@ -67,13 +68,9 @@ def reconstruct_space(
     beam, tangent = readings.beam, readings.clamp_tangent
     require_plain("the reconstruction in space", beam)
     clamp = ClampInSpace.of(readings)
-    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
     known = component_noise(readings, noise)
     on = np.flatnonzero(felt(readings, known))
-    deviation, stated = (
-        np.array([sizes.get(name, 0.0) for name in COMPONENTS]) / units
-        for sizes in (known, noise or {})
-    )
+    deviation, stated = (over_units(sizes, beam) for sizes in (known, noise or {}))
     loaded = clamp.at(on)
     place, normal, arc_length, criterion = np.split(loaded.contacts(), [3, 6, 7])
     there = (arc_length[0] >= 0) & (arc_length[0] <= LONGEST)
@@ -95,6 +92,20 @@ def reconstruct_space(
     }
     feet = pd.DataFrame(dict(zip(FOOT, (clamp.foot * beam.length).T, strict=True)))
     return feet.join(pd.DataFrame(columns, index=on)).fillna({"phase": "free"})
+
+
+def of_one_vibrissa(
+    readings: SpatialReadings | Sequence[SpatialReadings],
+) -> Sequence[SpatialReadings]:
+    """One sweep or several past a body, for who needs a straight and uniform vibrissa."""
+    sweeps = readings if isinstance(readings, Sequence) else [readings]
+    for one in sweeps:
+        require("readings", one, SpatialReadings, "as read_space gives them")
+        require_plain("the fit of a body", one.beam)
+        if one.beam != sweeps[0].beam:
+            what = "of different vibrissae"
+            raise InputError("readings", what, "of one", "fit each on its own")
+    return sweeps
 
 
 def wrench_complaint(found: pd.DataFrame) -> str | None:
@@ -138,11 +149,9 @@ def contacts_moved(
     readings: SpatialReadings, noise: Mapping[str, float], at: Integers, seed: int = 0
 ) -> Floats:
     """How far noise moves the contacts that are found, sample by sample."""
-    beam = readings.beam
-    deviation = np.array([noise.get(name, 0.0) for name in COMPONENTS])
-    deviation = deviation / np.repeat([beam.force_unit, beam.moment_unit], 3)
-    far, _, reach = ClampInSpace.of(readings).at(at).samples(deviation, np.random.default_rng(seed))
-    return np.where((reach >= 0) & (reach <= LONGEST), far * beam.length, np.nan)
+    clamp, deviation = ClampInSpace.of(readings).at(at), over_units(noise, readings.beam)
+    far, _, reach = clamp.samples(deviation, np.random.default_rng(seed))
+    return np.where((reach >= 0) & (reach <= LONGEST), far * readings.beam.length, np.nan)
 
 
 def _nowhere(found: pd.DataFrame) -> str | None:
@@ -214,6 +223,15 @@ class ClampInSpace(NamedTuple):
         foot, force, moment = (values[which] for values in self[:3])
         return self._replace(foot=foot, force=force, moment=moment)
 
+    @property
+    def components(self) -> Floats:
+        """Force and moment, shape (n, 6)."""
+        return np.hstack([self.force, self.moment])
+
+    def feeling(self, components: Floats) -> "ClampInSpace":
+        """The same with another force and moment."""
+        return self._replace(force=components[:, :3], moment=components[:, 3:])
+
     def contacts(self) -> Floats:
         """Point, normal, arc length and sin(phi1 - alpha), shape (8, n)."""
         size = np.linalg.norm(self.force, axis=1)
@@ -238,8 +256,7 @@ class ClampInSpace(NamedTuple):
         true, every = self.contacts(), []
         for _ in range(SAMPLES):
             disturbed = random.normal(size=(len(self.foot), 6)) * deviation
-            force, moment = self.force + disturbed[:, :3], self.moment + disturbed[:, 3:]
-            found = self._replace(force=force, moment=moment).contacts()
+            found = self.feeling(self.components + disturbed).contacts()
             every.append((np.linalg.norm(found[:3] - true[:3], axis=0), found[7], found[6]))
         far, sines, reach = np.array(every).swapaxes(0, 1)
         return far, sines, reach

@@ -2,15 +2,18 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import pandas as pd
 
 from analytic.numerics.walk import WalkEvent
+from analytic.problem.arrays import Floats
 from analytic.problem.recorder import AnyRecorder
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
+    FOOT,
     FORCE,
     MOMENT,
     NORMAL,
@@ -23,6 +26,11 @@ class SpatialRecorder(AnyRecorder[SpatialReadings]):
     """Its events are what `analytic.numerics.walk` calls events."""
 
     case: SpatialCase
+
+    @cached_property
+    def places(self) -> dict[str, Floats]:
+        path = self.case.path
+        return {"travel": path.travel, **dict(zip(FOOT, path.at(path.travel).T, strict=True))}
 
     def readings(self) -> SpatialReadings:
         events = stated(self.case, self.events())

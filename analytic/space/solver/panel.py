@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial import Legendre, legendre
 from scipy.optimize import brentq
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import cross
 from analytic.space.solver.contact import Scene
 from analytic.space.solver.sliding import (
     BY_TRAVEL,

@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import across, cross
+from analytic.space.problem.bodies.body import across
 from analytic.space.solver.contact import APART, Contact, Scene
 from analytic.space.solver.rod import Loaded, Plane, loaded_part
 

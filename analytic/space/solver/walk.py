@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -24,6 +25,7 @@ _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
 _STEADY = 1e-6  # the same across an edge, where the foot moves by 1e-9
+_TANGENT = attrgetter("tangent")
 
 
 class Touching(Protocol):
@@ -160,7 +162,7 @@ class Gliding(Walker[Contact]):
                     failed = goal
                     continue
             if found.tangent != contact.tangent:
-                self._note("phase", first_unlike(contact, at, goal, self._on, _phase, _CLOSE))
+                self._note("phase", first_unlike(contact, at, goal, self._on, _TANGENT, _CLOSE))
             at, contact = goal, found
         return at, contact, True
 
@@ -217,7 +219,3 @@ class Gliding(Walker[Contact]):
 
 def _apart(one: Contact, other: Contact) -> float:
     return float(np.linalg.norm(one.on_parallel - other.on_parallel))
-
-
-def _phase(contact: Contact) -> bool:
-    return contact.tangent

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import hull_of, read_body
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive, within
-from analytic.space.problem.bodies.body import Body, Spot, cross, flat_spot
+from analytic.space.problem.bodies.body import Body, Spot, flat_spot
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, vector
 
