@@ -1,41 +1,36 @@
 """A document as one offline HTML file, in light and dark, on paper and on a telephone."""
 
+import base64
+import io
 import platform
 import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from datetime import datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup, escape
-
-from analytic.problem.arrays import Floats
-from compare.show.document import Document, Table
-from compare.show.scene import SweepScene, corners_and_faces, normals
-from compare.show.style import PHASE_NAMES
-
-if TYPE_CHECKING:
-    from jinja2 import Template
-
-import base64
-import io
-import warnings
-from collections.abc import Mapping
-from typing import Any
-
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pydantic_core import to_json
 
+from analytic.problem.arrays import Floats
 from analytic.problem.files import SOFTWARE, write_whole
-from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
+from compare.show.document import Document, Table
+from compare.show.scene import SweepScene, corners_and_faces, normals
+from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PHASE_NAMES, PINK
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
 
 _PACKAGES = {"vibrissa-testbed": "vibrissa-testbed", "numpy": "NumPy", "scipy": "SciPy",
              "mujoco": "MuJoCo"}  # fmt: skip

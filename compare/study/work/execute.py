@@ -95,10 +95,9 @@ def dask_crew(address: str) -> Crew:
 
 
 def _gone(address: str) -> InputError:
+    allowed = "that of a Dask scheduler that can be reached"
     remedy = "start it and the study again: complete runs are kept"
-    return InputError(
-        "--scheduler", address, "that of a Dask scheduler that can be reached", remedy
-    )
+    return InputError("--scheduler", address, allowed, remedy)
 
 
 def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator[Result]:
