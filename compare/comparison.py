@@ -113,15 +113,8 @@ class Comparison(Judged[Readings], Measurement):
         if self.offset.uncertainty > 0:
             fitted = Input(self.offset.uncertainty / _OF_95)
             stated = replace(stated, inputs={**stated.inputs, "foot_x": fitted})
-        found = validate(
-            self,
-            case,
-            stated,
-            simulation=simulation,
-            budget=budget,
-            noise=self.noise,
-            window=self.tolerances.snap_off_window,
-        )
+        by: dict[str, Any] = {"noise": self.noise, "window": self.tolerances.snap_off_window}
+        found = validate(self, case, stated, simulation=simulation, budget=budget, **by)
         return replace(self, validation=found)
 
     def _failures(self) -> Iterator[Failure]:

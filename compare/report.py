@@ -59,12 +59,8 @@ def write_report(
     place = folder if out is None else out
     if (folder / "study.json").exists():
         return Report(write_study_report(folder, warn, place))
-    if any(folder.glob("*.parquet")):
-        return _of_a_run(folder, place)
-    return Report(write_all(place, {"report.html": html(runs_document(folder))})[-1])
-
-
-def _of_a_run(folder: Path, place: Path) -> Report:
+    if not any(folder.glob("*.parquet")):
+        return Report(write_all(place, {"report.html": html(runs_document(folder))})[-1])
     stored, film = read_run(folder), Film.of(folder)
     found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
     if isinstance(found, Comparison):

@@ -360,7 +360,8 @@ def simulate_model(
     -------
     Readings
         As of `simulate_motion`, source ``"model <name>"``; ``provenance["measured"]`` says what
-        beam the model is. T1 is the model's own first period.
+        beam the model is. T1 is the model's own first period. A station is ``"touches another"`` if
+        the vibrissa touches more than the object, or the object more than the vibrissa.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from analytic.problem.readings import Readings
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
 _SURELY = 1e-6  # of it: no zero is known better
+_COARSE = 0.5  # of all stations are as the one before: the converter's steps hide the noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
 DOUBLE_SIDED_95 = 1.959964  # standard deviations, of a normal distribution
@@ -42,7 +43,14 @@ def scatter(values: Floats) -> float:
     differences = np.convolve(values, _DIFFERENCE, mode="valid")
     # The norm, sqrt(70), is the difference's gain on white noise.
     noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
+    if np.mean(np.diff(values) == 0) > _COARSE:
+        noise = max(noise, rounding(values))
     return float(max(noise, _ROUND_OFF * np.abs(values).max()))
+
+
+def rounding(values: Floats) -> float:
+    """Standard deviation of what a converter rounds off."""
+    return float(np.nanmin(np.diff(np.unique(values)), initial=np.inf)) / 12**0.5
 
 
 def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dict[str, float]:

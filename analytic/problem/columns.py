@@ -22,6 +22,7 @@ STATUSES = (
     "chattering",
     "lost",
     "touches again",
+    "touches another",
     "sticks",
     "creeping",
 )

@@ -11,7 +11,7 @@ from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_comp
 from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.output import distinct_names, page_folder
-from compare.commands.pipeline import AnyComparison, reported
+from compare.commands.pipeline import AnyComparison, reported, several_reported
 from compare.commands.sweeping import AnyReadings, note_rows
 from compare.commands.sweeping import RigFiles as RigFiles
 from compare.comparison import Comparison, compare
@@ -25,7 +25,7 @@ from compare.read.limits import read_tolerances
 from compare.read.run_folder import read_stored
 from compare.read.space_readings import read_space
 from compare.show.passes import repeats_summary
-from compare.show.side_by_side import SideBySide, summary, write_side_by_side
+from compare.show.side_by_side import SideBySide
 
 
 def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:
@@ -161,7 +161,4 @@ def keep_side_by_side(found: SideBySide, out: Path) -> bool:
     with page_folder(out) as folder:
         for readings in (found.reference, *(one.candidate for one in found.against.values())):
             note_rows(readings)
-        terminal.show(*summary(found))
-        for path in write_side_by_side(found, folder, "side-by-side"):
-            terminal.print_written(path)
-    return found.agree
+        return several_reported(found, folder, "side-by-side")

@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable
+from functools import wraps
 from io import TextIOWrapper
 from traceback import format_exc
 from typing import Annotated, Any
@@ -45,9 +46,8 @@ class Group(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401  # typer's own
         if args[0] in _GONE:
-            raise InputError(
-                "command", args[0], "one of `vibrissa --help`", f"use {_GONE[args[0]]}"
-            )
+            instead = f"use {_GONE[args[0]]}"
+            raise InputError("command", args[0], "one of `vibrissa --help`", instead)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401
@@ -83,10 +83,19 @@ COMMANDS: dict[str, tuple[Callable[..., bool], ...]] = {
 _NAMES = {list_what_there_is: "list"}
 
 
+def _with_exit_code(command: Callable[..., bool]) -> Callable[..., int]:
+    @ended_by_signals()
+    @wraps(command)
+    def ended(*given: Any, **named: Any) -> int:  # noqa: ANN401  # whatever the command takes
+        return AGREES if command(*given, **named) else DISAGREES
+
+    return ended
+
+
 for group, commands in COMMANDS.items():
     for command in commands:
         name = _NAMES.get(command, command.__name__)
-        app.command(name, rich_help_panel=group)(ended_by_signals()(command))
+        app.command(name, rich_help_panel=group)(_with_exit_code(command))
 
 
 def _show_version(asked: bool) -> None:
@@ -130,7 +139,7 @@ def _run() -> int:
         if not sys.argv[1:]:
             app(["--help"], standalone_mode=False)
             return BAD_INPUT
-        return DISAGREES if app(standalone_mode=False) is False else AGREES
+        return app(standalone_mode=False) or AGREES
     except (InputError, TyperException, OSError, ArithmeticError, MemoryError) as error:
         return _refuse(_in_words(error))
     except (typer.Abort, KeyboardInterrupt) as error:
@@ -138,10 +147,8 @@ def _run() -> int:
     except Exception as error:
         if os.environ.get("VIBRISSA_TRACEBACK"):
             typer.echo(format_exc(), err=True)
-        return _refuse(
-            f"internal error, {type(error).__name__}: {error}; please report it with what "
-            "VIBRISSA_TRACEBACK=1 shows"
-        )
+        said, remedy = f"internal error, {type(error).__name__}: {error}", "VIBRISSA_TRACEBACK=1"
+        return _refuse(f"{said}; please report it with what {remedy} shows")
 
 
 def _in_words(error: Exception) -> str:
@@ -159,9 +166,8 @@ def _in_words(error: Exception) -> str:
         case MemoryError():
             return f"out of memory ({error}); take fewer segments or contour points"
         case ZeroDivisionError() | OverflowError() | FloatingPointError():
-            return (
-                f"a number beyond double precision ({error}); check the units and sizes of the case"
-            )
+            beyond = f"a number beyond double precision ({error})"
+            return f"{beyond}; check the units and sizes of the case"
     return str(error)
 
 
@@ -169,12 +175,9 @@ def _require_utf8(word: str) -> None:
     try:
         word.encode()
     except UnicodeEncodeError as error:
-        raise InputError(
-            "argument",
-            ascii(word),
-            f"text in the encoding of the terminal, {sys.getfilesystemencoding()}",
-            "rename the file or folder, or set LC_ALL=C.UTF-8",
-        ) from error
+        allowed = f"text in the encoding of the terminal, {sys.getfilesystemencoding()}"
+        remedy = "rename the file or folder, or set LC_ALL=C.UTF-8"
+        raise InputError("argument", ascii(word), allowed, remedy) from error
 
 
 def _refuse(message: str) -> int:

@@ -19,7 +19,6 @@ from mujoco_models.allowed import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
     from compare.read.job import AnyJob
-    from mujoco_models.motion import Motion
 
 IN_THE_PLANE = (PLANE, MOTION, MODEL)
 ANY_CASE = (*IN_THE_PLANE, SPACE)
@@ -204,18 +203,13 @@ class Changes:
 
         given = self._given("segments", "beam", "obstacle")
         given |= {"planar": False} if self.spatial else {}
-        stations = job.stations if self.stations is None else self.stations
-        if not isinstance(job, Job):
-            return job.changed(stations, given)
-        return replace(job.changed(stations, given), motion=self._moved(job.motion))
+        made = job.changed(job.stations if self.stations is None else self.stations, given)
+        faster = self._given("speed", "timestep")
+        if isinstance(made, Job) and (made.motion or self.motion or faster):
+            from mujoco_models.motion import Motion
 
-    def _moved(self, motion: "Motion | None") -> "Motion | None":
-        given = self._given("speed", "timestep")
-        if motion is None and not (self.motion or given):
-            return None
-        from mujoco_models.motion import Motion
-
-        return replace(motion or Motion(), **given)
+            return replace(made, motion=replace(made.motion or Motion(), **faster))
+        return made
 
     def _given(self, *names: str) -> dict[str, Any]:
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}

@@ -120,12 +120,8 @@ def reported(
 ) -> Path:
     with waiting("drawing"):
         written = write_report(comparison, folder, budget, film, body)
-    print_comparison(comparison)
-    return written
-
-
-def print_comparison(comparison: AnyComparison) -> None:
     terminal.show(*summary_of(comparison))
+    return written
 
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
@@ -164,10 +160,15 @@ def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_bu
 
         budget, _ = budget_of(job)
     found = SideBySide.of(exact, sweeps, _rows(outcomes), budget, job.case.name)
+    return several_reported(found, folder, "engines")
+
+
+def several_reported(found: SideBySide, folder: Path, called: str) -> bool:
+    """Print and write how far all are apart; whether all agree."""
     terminal.show(*summary(found))
     if found.split is not None:
         terminal.print_line(found.split.sentence)
-    for path in write_side_by_side(found, folder, "engines"):
+    for path in write_side_by_side(found, folder, called):
         terminal.print_written(path)
     return found.agree
 

@@ -1,7 +1,7 @@
 """The command ``reconstruct``: the object from the clamp."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -25,9 +25,6 @@ from compare.commands.output import distinct_name, distinct_names, waiting
 from compare.read.case import load_space_job
 from compare.read.kinds import SPACE
 from compare.read.toml import TomlFile
-
-if TYPE_CHECKING:
-    from compare.read.job import SpaceJob
 
 SWEEP = "readings in the plane"
 
@@ -87,7 +84,9 @@ def reconstruct(
     """
     if noise is not None and not 0 <= noise < 1:
         raise InputError("--noise", noise, "a number from 0 up to 1", "as 0.01")
-    known = None if beam is None else _in_space(beam)
+    known = None  # the case in space that the vibrissa's file is, if it is one
+    if beam is not None and "body" in TomlFile.read(beam, "beam file").tables:
+        known = load_space_job(beam)
     found = pass_files(files)
     from compare.read.space_readings import is_spatial
 
@@ -122,8 +121,3 @@ def reconstruct(
                 raise
             raise error.because("what is said of the readings above comes first") from error
     return good
-
-
-def _in_space(beam: Path) -> "SpaceJob | None":
-    """The case in space that the vibrissa's file is, if it is one."""
-    return load_space_job(beam) if "body" in TomlFile.read(beam, "beam file").tables else None

@@ -102,13 +102,13 @@ def report(
         raise InputError("DIR", folder, "a folder that is there", _REMEDY)
     if not any(folder.glob("*.parquet")) and not any(folder.rglob("*.json")):
         raise InputError("DIR", folder, "the folder of a run, a study, or of runs", _REMEDY)
-    from compare.commands.pipeline import print_comparison
-    from compare.commands.terminal import print_report
+    from compare.commands import terminal
     from compare.report import write_report
+    from compare.show.report import summary_of
 
     with page_folder(out or folder), waiting("reading"):
         found = write_report(folder, out, warn)
     if found.comparison is not None:
-        print_comparison(found.comparison)
-    print_report(found.path)
+        terminal.show(*summary_of(found.comparison))
+    terminal.print_report(found.path)
     return found.comparison is None or found.comparison.agrees

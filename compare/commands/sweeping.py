@@ -34,12 +34,19 @@ AnyReadings: TypeAlias = Readings | SpatialReadings
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa touches the object, or would lie in it",
+    "touches another": ": the vibrissa touches more than the object, or the object more than it",
     "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
     "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
     "impratio 100, a faster foot, or harder contacts in shorter steps",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",
+}
+# What was done to rows of a rig's file.
+_ROWS = {
+    "out_of_order": "out of order were sorted by foot_x",
+    "averaged": "averaged with the one before, at the same foot_x",
+    "dropped": "filled with zeros amid contact were left out",
 }
 
 
@@ -226,15 +233,7 @@ def note_rows(readings: Readings) -> None:
     if units := readings.provenance.get(OWN_UNITS):
         shown = ", ".join(f"{name} in {unit}" for name, unit in units.items())
         notes.append(f"units taken from the line below the names: {shown}")
-    notes += [
-        f"{count} rows {what}"
-        for name, what in (
-            ("out_of_order", "out of order were sorted by foot_x"),
-            ("averaged", "averaged with the one before, at the same foot_x"),
-            ("dropped", "filled with zeros amid contact were left out"),
-        )
-        if (count := rows.get(name))
-    ]
+    notes += [f"{count} rows {what}" for name, what in _ROWS.items() if (count := rows.get(name))]
     if notes:
         warn(f"{readings.source}: {'; '.join(notes)}")
 

@@ -98,7 +98,11 @@ def show(*blocks: Block) -> None:
             case Table():
                 _print_table(_table(block))
             case Verdict():
-                _verdict(block)
+                claim = RichText(block.claim, style="green" if block.good else "red")
+                console().print(claim.append(f" {block.said}", style="default"), soft_wrap=True)
+                if block.why:
+                    print_line(block.why)
+                _list([*block.failures, *block.remarks])
 
 
 def _print_table(table: RichTable) -> None:
@@ -113,14 +117,6 @@ def _print_table(table: RichTable) -> None:
     if sizes().minimum >= wide.width:
         wide.width = sizes().maximum
     wide.print(table)
-
-
-def _verdict(found: Verdict) -> None:
-    claim = RichText(found.claim, style="green" if found.good else "red")
-    console().print(claim.append(f" {found.said}", style="default"), soft_wrap=True)
-    if found.why:
-        print_line(found.why)
-    _list([*found.failures, *found.remarks])
 
 
 def _list(lines: Sequence[str]) -> None:

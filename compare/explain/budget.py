@@ -1,4 +1,4 @@
-"""The budget of a disagreement: which sweeps it needs, and what it makes of their readings."""
+"""The budget of a disagreement at rest: which sweeps it needs, and what it makes of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -8,6 +8,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import units
+from analytic.space import SpatialReadings
 from compare.explain.fit import Suspect, suspects
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
@@ -23,11 +24,13 @@ from compare.explain.parts import (
 from compare.explain.variations import shifted_inward, stretched
 from compare.measure.disagreement import rms
 from compare.sense.noise import scales
-from mujoco_models.settings import Settings
+from mujoco_models.allowed import CONTACT_STIFFNESSES
+from mujoco_models.settings import Settings, SpatialSettings
 
 STIFFER = 10  # times the contact stiffness
 SHARPER = 10  # times less of the corners' radius
 CALMER = 100  # times less out of balance
+_REFINED = "it is refined from there"
 _AT_REST = 1e-8  # EI/L; what all the other sweeps are out of balance by at most
 
 
@@ -45,16 +48,9 @@ def controlled_changes(
     n, k = settings.segments, settings.contact_stiffness
     for name, value, most in (("segments", n, 250), ("contact_stiffness", k, 1e8)):
         if value > most:
-            raise InputError(
-                f"mujoco.{name} of a budget", value, f"at most {most:g}", "it is refined from there"
-            )
-    if corners and settings.corner_radius < 1e-8:
-        raise InputError(
-            "mujoco.corner_radius of a budget",
-            settings.corner_radius,
-            "at least 1e-08",
-            "it is refined from there",
-        )
+            raise InputError(f"mujoco.{name} of a budget", value, f"at most {most:g}", _REFINED)
+    if corners and (radius := settings.corner_radius) < 1e-8:
+        raise InputError("mujoco.corner_radius of a budget", radius, "at least 1e-08", _REFINED)
     rest = replace(settings, tolerance=min(settings.tolerance, _AT_REST))
     plain = replace(rest, obstacle="primitive") if smooth else rest
     sharp = replace(plain, corner_radius=settings.corner_radius / SHARPER) if corners else plain
@@ -209,3 +205,41 @@ def _sensor(run: Readings, shared: Shared, exact: Readings) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
     sizes = units(run.beam, CLAMP_READINGS) / [*scales(exact).values()]
     return np.asarray(sizes[:, None] * run.values("discrepancy")[shared.kept])
+
+
+_ORDER = 2.0  # of the chain in 1/N
+_MOST = 400  # segments
+
+
+def changes_in_space(settings: SpatialSettings) -> dict[str, SpatialSettings]:
+    """The settings of all sweeps by name; ``base`` is the one that the budget is of."""
+    segments, stiffness = 2 * settings.segments, STIFFER * settings.contact_stiffness
+    if segments > _MOST:  # half as many show the same
+        segments = settings.segments // 2
+    if stiffness > CONTACT_STIFFNESSES[1]:
+        stiffness = settings.contact_stiffness / STIFFER
+    return {
+        "base": settings,
+        "segments": replace(settings, segments=segments),
+        "stiffness": replace(settings, contact_stiffness=stiffness),
+    }
+
+
+def budget_in_space(
+    exact: SpatialReadings,
+    runs: Mapping[str, SpatialReadings],
+    changes: Mapping[str, SpatialSettings],
+) -> Parted:
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
+
+    Each of the six components is relative to the largest of its kind, force or moment.
+    """
+    shared = np.logical_and.reduce([one.touching for one in (exact, *runs.values())])
+    account = Account(Shared(exact, shared), runs)
+    base, run = changes["base"], account.run
+    finer = (changes["segments"].segments / base.segments) ** _ORDER
+    harder = changes["stiffness"].contact_stiffness / base.contact_stiffness
+    account.add_extrapolated("discretisation", run["base"], run["segments"], finer)
+    account.add_extrapolated("softness", run["base"], run["stiffness"], harder)
+    account.settle()
+    return Parted(**account.common(), **account.closing(), order=_ORDER, blame=account.blame())

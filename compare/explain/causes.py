@@ -130,36 +130,20 @@ def physical_faults(
     def offset(size: float) -> str:
         said = f"{name} {size:+.2e} {unit} off, the same at all stations: an offset (or a lag)"
         if taken:
-            in_all = (
-                f"{taken:+.2e} {unit} that were taken off, so {size + taken:+.2e} {unit} in all"
-            )
-            return f"{said} beside the {in_all}: something else that is off imitates an offset"
+            known = f"{taken:+.2e} {unit} that were taken off, so {size + taken:+.2e} {unit} in all"
+            return f"{said} beside the {known}: something else that is off imitates an offset"
         see = ", see `--offset auto`" if name == "foot_x" and not found.offset.unknown else ""
         return f"{said}{see}"
 
     # Farther off the readings are no longer linear in it; `offset` is there for that.
-    yield displaced(
-        offset,
-        every,
-        0.1,
-        -size_of,
-        lambda size, foot_x: foot_x - size * size_of,
-    )
-    yield displaced(
-        f"scale of the stage {{:+.2%}} off: {name} is too large by that, counted from 0".format,
-        every,
-        0.2,
-        -x,
-        lambda size, foot_x: foot_x / (1 + size),
-    )
+    yield displaced(offset, every, 0.1, -size_of, lambda size, foot_x: foot_x - size * size_of)
+    text = f"scale of the stage {{:+.2%}} off: {name} is too large by that, counted from 0"
+    yield displaced(text.format, every, 0.2, -x, lambda size, foot_x: foot_x / (1 + size))
     way = direction(reference) * size_of
     for one, felt in zip(np.eye(3), CLAMP_READINGS, strict=True):
         text = f"{felt} lags by {{:+.2e}} {unit} of the clamp's way: its channel is late"
-        yield displaced(
-            text.format, one[:, None], 0.1, -way, lambda size, foot_x: foot_x - size * way
-        )
-    exact = Resolved.of(reference, x)
-    if exact is not None:
+        yield displaced(text.format, one[:, None], 0.1, -way, lambda size, at: at - size * way)
+    if (exact := Resolved.of(reference, x)) is not None:
         yield from _solved(exact, table, scale)
 
 
@@ -212,15 +196,10 @@ def _text(exact: Resolved, fault: str, size: float) -> str:
     ours = exact.case.beam.length if fault == "tip_radius" else abs(unit)
     value, stated = (stated + size * unit) / ours, stated / ours
     inverse, stated_inverse = (1 / x if x > 0 else math.inf for x in (value, stated))
-    said: str = _SOLVED[fault]["text"].format(
-        size=size,
-        value=value,
-        stated=stated,
-        inverse=inverse,
-        cells=abs(0.5 / (1 / inverse - 1 / stated_inverse)) if inverse != stated_inverse else 0,
-        stated_inverse=stated_inverse,
-    )
-    return said
+    cells = abs(0.5 / (1 / inverse - 1 / stated_inverse)) if inverse != stated_inverse else 0
+    known = {"size": size, "value": value, "stated": stated, "cells": cells}
+    known |= {"inverse": inverse, "stated_inverse": stated_inverse}
+    return str(_SOLVED[fault]["text"].format(**known))
 
 
 def _change(exact: Resolved, fault: str, scale: Floats, size: float) -> Floats | None:

@@ -14,23 +14,17 @@ class Fitted(NamedTuple):
     """The best size of a signature."""
 
     size: float
-    left: float
-    """Sum of squares that it leaves."""
-    fraction: float
-    """Of the disagreement's sum of squares that it accounts for."""
+    left: float  # sum of squares that it leaves
+    fraction: float  # of the disagreement's sum of squares that it accounts for
 
 
 class Explanation(NamedTuple):
     """One mistake or fault, as it fits a disagreement best."""
 
-    text: str
-    """What it is, with its size."""
-    left: float
-    """Sum of squares that it leaves."""
-    sizes: int = 1
-    """How many numbers were fitted."""
-    size: float = 0.0
-    """The one that was, if it is one."""
+    text: str  # what it is, with its size
+    left: float  # sum of squares that it leaves
+    sizes: int = 1  # how many numbers were fitted
+    size: float = 0.0  # the one that was, if it is one
 
 
 def fitted(error: Floats, signature: Floats) -> Fitted:

@@ -97,13 +97,9 @@ def _alone(
 ) -> list[Explanation]:
     """Every fault, then everything else that may be wrong alone."""
     error = seen - true
-    others = [
-        *(
-            Explanation(one.text, float(np.sum((seen - one.of(true)) ** 2)), one.sizes)
-            for one in wirings
-        ),
-        *_of_all(error),
-    ]
+    left = [float(np.sum((seen - one.of(true)) ** 2)) for one in wirings]
+    others = [Explanation(x.text, of, x.sizes) for x, of in zip(wirings, left, strict=True)]
+    others += _of_all(error)
     fits = [_linear(fault, error) for fault in faults]
     best, _ = best_alone([*fits, *others], weigh)
     unclear = best is None or weigh.rest(best) > _REST

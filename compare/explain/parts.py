@@ -93,18 +93,12 @@ class Shared:
 
     def __init__(self, exact: Readings | SpatialReadings, kept: Booleans) -> None:
         if not kept.any():
-            raise InputError(
-                "stations common to all sweeps of the budget",
-                0,
-                "some",
-                "see their status: a sweep that chatters has none",
-            )
+            common, remedy = "common to all sweeps of the budget", "a sweep that chatters has none"
+            raise InputError(f"stations {common}", 0, "some", f"see their status: {remedy}")
         self.kept = kept  # shape (stations of the sweep,)
-        self._scales: Mapping[str, float]
-        if isinstance(exact, SpatialReadings):
-            self._scales = component_scales(exact)
-        else:
-            self._scales = scales(exact)
+        self._scales: Mapping[str, float] = (
+            component_scales(exact) if isinstance(exact, SpatialReadings) else scales(exact)
+        )
         self.exact = self.signal(exact)
 
     @classmethod

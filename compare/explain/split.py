@@ -23,7 +23,7 @@ class Split:
     """What of a subject's disagreement is its implementation."""
 
     subject: str  # names of the engines
-    twin: str  # names of the engines
+    twin: str
     # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     disagreement: dict[str, float]
     implementation: dict[str, float]
@@ -43,12 +43,9 @@ class Split:
     @property
     def share(self) -> float:
         """The implementation's largest share of a reading's disagreement; 0 below rounding."""
-        return max(
-            self.implementation[name] / max(self.disagreement[name], self.model[name])
-            if self.implementation[name] > ROUNDING
-            else 0.0
-            for name in CLAMP_READINGS
-        )
+        shown = {name: x for name, x in self.implementation.items() if x > ROUNDING}
+        whole = {name: max(self.disagreement[name], self.model[name]) for name in shown}
+        return max((x / whole[name] for name, x in shown.items()), default=0.0)
 
     @property
     def sentence(self) -> str:
@@ -90,25 +87,13 @@ def split(
     if "subject" not in by_role or "twin" not in by_role:
         return None
     subject, twin = by_role["subject"], by_role["twin"]
-    between = _measured(sweeps[twin], sweeps[subject])
+    window = Tolerances.snap_off_window
+    between = measure(sweeps[twin], sweeps[subject], window)
+    off = {name: _rms(measure(exact, one, window)) for name, one in sweeps.items()}
+    disagreement, model = off.pop(subject), off.pop(twin)
     apart = between.snap_off.difference
-    return Split(
-        subject,
-        twin,
-        _rms(_measured(exact, sweeps[subject])),
-        _rms(between),
-        _rms(_measured(exact, sweeps[twin])),
-        {
-            name: _rms(_measured(exact, readings))
-            for name, readings in sweeps.items()
-            if name not in (subject, twin)
-        },
-        None if apart is None else apart / exact.beam.length,
-    )
-
-
-def _measured(reference: Readings, candidate: Readings) -> Measurement:
-    return measure(reference, candidate, Tolerances.snap_off_window)
+    snap_off = None if apart is None else apart / exact.beam.length
+    return Split(subject, twin, disagreement, _rms(between), model, off, snap_off)
 
 
 def _rms(found: Measurement) -> dict[str, float]:

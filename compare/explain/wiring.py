@@ -27,17 +27,17 @@ class Misreading:
 
     text: str
     mixes: Floats  # shape (3, 3); the readings seen, of the true ones
-    still: Floats  # shape (3, 1); what is added at all stations
     sizes: int = 0  # how many numbers were fitted
+    still: Floats | float = 0.0  # shape (3, 1); what is added at all stations
 
     def of(self, true: Floats) -> Floats:
         """What is read, shape (3, stations)."""
-        return self.mixes @ true + self.still
+        return np.asarray(self.mixes @ true + self.still)
 
 
 def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Misreading]:
     """Every mistake that needs no contour, as it fits best."""
-    yield from _axes(true, seen, scale)
+    yield from _axes(scale)
     yield from _exchanged(true, seen)
     yield from _rotated(true, seen, scale)
     yield from _displaced(true, seen, scale, length)
@@ -45,18 +45,14 @@ def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterato
     yield from _dead(true, seen)
 
 
-def _mixed(text: str, mixes: Floats, sizes: int = 0) -> Misreading:
-    return Misreading(text, mixes, np.zeros((3, 1)), sizes)
-
-
-def _axes(true: Floats, seen: Floats, scale: Floats) -> Iterator[Misreading]:
+def _axes(scale: Floats) -> Iterator[Misreading]:
     """Signs and the order of the two forces."""
     ratio = scale[1] / scale[0]
     swapped = np.array([[0, ratio, 0], [1 / ratio, 0, 0], [0, 0, 1]])
     for axes, swap in ((np.eye(3), False), (swapped, True)):
         for signs in product((1, -1), repeat=3):
             if swap or signs != (1, 1, 1):
-                yield _mixed(_axes_text(signs, swap), np.array(signs)[:, None] * axes)
+                yield Misreading(_axes_text(signs, swap), np.array(signs)[:, None] * axes)
 
 
 def _exchanged(true: Floats, seen: Floats) -> Iterator[Misreading]:
@@ -69,7 +65,7 @@ def _exchanged(true: Floats, seen: Floats) -> Iterator[Misreading]:
         mixes = np.eye(3)
         mixes[[force, 2]] = 0
         mixes[force, 2], mixes[2, force] = factor, 1 / factor
-        yield _mixed(f"{CLAMP_READINGS[force]} and moment_z swapped", mixes, 1)
+        yield Misreading(f"{CLAMP_READINGS[force]} and moment_z swapped", mixes, 1)
 
 
 def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
@@ -96,7 +92,7 @@ def _rotated(true: Floats, seen: Floats, scale: Floats) -> Iterator[Misreading]:
         return
     c, s, ratio = np.cos(angle), np.sin(angle), scale[1] / scale[0]
     text = f"sensor turned by {np.degrees(angle):+.3g} degrees about z: force_x and force_y mix"
-    yield _mixed(text, np.array([[c, s * ratio, 0], [-s / ratio, c, 0], [0, 0, 1]]), 1)
+    yield Misreading(text, np.array([[c, s * ratio, 0], [-s / ratio, c, 0], [0, 0, 1]]), 1)
 
 
 def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Misreading]:
@@ -111,7 +107,7 @@ def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iter
                 f"sensor {size:+.3g} L {where} the vibrissa off the clamp: moment_z is taken about "
                 f"another point (or crosstalk of {CLAMP_READINGS[force]})"
             )
-            yield _mixed(text, mixes, 1)
+            yield Misreading(text, mixes, 1)
 
 
 def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
@@ -130,7 +126,7 @@ def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
             names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
             said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({known[unit]}?)"
         if len(said) == len(groups):  # of one factor it is one mistake
-            yield _mixed(", ".join(said.values()), np.diag(gains), 1)
+            yield Misreading(", ".join(said.values()), np.diag(gains), 1)
 
 
 def _factors(of_moment: bool) -> dict[float, str]:
@@ -151,11 +147,8 @@ def _dead(true: Floats, seen: Floats) -> Iterator[Misreading]:
         follows = float(np.mean((seen[i] - still) * (true[i] - true[i].mean()))) ** 2
         if follows > _FOLLOWS * np.var(seen[i]) * np.var(true[i]):
             continue  # small, as in another unit, but alive
-        at = (
-            f"stays at {still:.2g} of its largest magnitude"
-            if abs(still) > 0.05
-            else "stays at zero"
-        )
-        one = np.eye(3)[i]
-        mixes = np.diag(1 - one)
-        yield Misreading(f"dead channel: {name} {at}", mixes, still * one[:, None], 1)
+        at, one = "zero", np.eye(3)[i]
+        if abs(still) > 0.05:
+            at = f"{still:.2g} of its largest magnitude"
+        text, mixes = f"dead channel: {name} stays at {at}", np.diag(1 - one)
+        yield Misreading(text, mixes, 1, still * one[:, None])

@@ -78,11 +78,8 @@ def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAll
         if true is not None and known.any():
             right.append(np.mean(judged.phase[known] == true[known]))
     fraction = float(np.mean(right) - _SIGMAS * np.std(right)) if right else 1.0
-    return NoiseAllowance(
-        level,
-        {n: _SIGMAS * float(np.sqrt(np.mean(np.square(m)))) for n, m in moved.items() if m},
-        max(fraction, 0.0),
-    )
+    far = {n: _SIGMAS * float(np.sqrt(np.mean(np.square(m)))) for n, m in moved.items() if m}
+    return NoiseAllowance(level, far, max(fraction, 0.0))
 
 
 def spatial_allowance(

@@ -22,18 +22,10 @@ _FEW = 10  # stations
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Judged(SweepPair[Sweep]):
-    """A comparison of n components along a travel; the plane and space each add their own.
+    """A comparison of n components along a travel; the plane and space each add their own."""
 
-    Attributes
-    ----------
-    tolerances : Limits
-        For the verdict.
-    noise : Allowance
-        What noise adds to them.
-    """
-
-    tolerances: Limits
-    noise: Allowance
+    tolerances: Limits  # for the verdict
+    noise: Allowance  # what noise adds to them
 
     def _failures(self) -> Iterator[Failure]:
         raise NotImplementedError
@@ -106,12 +98,8 @@ class Judged(SweepPair[Sweep]):
     def remarks(self) -> tuple[str, ...]:
         """What is to be known of both sweeps, and of the limits that are exceeded."""
         failed = " ".join(self.failures)
-        unknown = [*untrusted_stretches(self.reference)]
-        beside = [
-            stretch
-            for stretch in untrusted_stretches(self.candidate)
-            if stretch not in failed and stretch not in unknown
-        ]
+        unknown, own = map(list, map(untrusted_stretches, (self.reference, self.candidate)))
+        beside = [stretch for stretch in own if stretch not in failed and stretch not in unknown]
         notes: list[str] = [
             f"note: not all stations of the {which} are compared: {stretch}"
             for which, stretches in (("reference", unknown), ("candidate", beside))
@@ -192,11 +180,6 @@ def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever JSON can hold
 
 
 def _origin(readings: Sweep) -> dict[str, Any]:
-    return {
-        "source": readings.source,
-        "beam": asdict(readings.beam),
-        "stations": len(readings.table),
-        "provenance": {
-            k: v for k, v in readings.provenance.items() if k not in ("contour", "others")
-        },
-    }
+    known = {k: v for k, v in readings.provenance.items() if k not in ("contour", "others")}
+    about = {"source": readings.source, "beam": asdict(readings.beam)}
+    return {**about, "stations": len(readings.table), "provenance": known}

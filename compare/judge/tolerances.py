@@ -80,23 +80,19 @@ class Limits:
 
     def of(self, component: str, kind: LimitKind, phase: str = "") -> Limit:
         """The limit of a component, as ``"force_x"``, the most special that there is."""
-        found = self._most_special(
-            f"{component}.{phase}.{kind}", f"{component}.{kind}", f"{phase}.{kind}"
-        )
-        return as_limit(kind, getattr(self, kind)) if found is None else found
+        limits, own = self.limits(), f"{component}.{phase}.{kind}"
+        names = (own, f"{component}.{kind}", f"{phase}.{kind}", kind)
+        return next(limits[name] for name in names if name in limits)
 
     def of_phase(self, component: str, phase: str) -> Limit | None:
         """The limit of a component's rms in one phase; None if none was asked for."""
-        return self._most_special(f"{component}.{phase}.rms", f"{phase}.rms")
-
-    def _most_special(self, *names: str) -> Limit | None:
-        return next((as_limit(n, self.special[n]) for n in names if n in self.special), None)
+        limits = self.limits()
+        return limits.get(f"{component}.{phase}.rms", limits.get(f"{phase}.rms"))
 
     def usual(self) -> set[str]:
         """Names of the limits that nobody asked for: with the reasons of the defaults."""
-        return {
-            n for n in self.general() if getattr(self, n).reason == getattr(type(self), n).reason
-        }
+        limits = self.limits()
+        return {n for n in self.general() if limits[n].reason == getattr(type(self), n).reason}
 
     def by_convention(self) -> Self:
         """The same limits for a source that the defaults' reasons do not hold for."""
@@ -195,8 +191,8 @@ class Tolerances(Limits):
         suited = self if is_smooth_model(candidate) else self.by_convention()
         few = 1 - _BETWEEN / max(int(candidate.trusted.sum()), 1)
         if "phase_agreement" in defaults and few < suited.phase_agreement:
-            agreement = Limit(max(few, 0.0), _reason(suited.phase_agreement))
-            suited = replace(suited, phase_agreement=agreement)
+            reason = suited.limits()["phase_agreement"].reason
+            suited = replace(suited, phase_agreement=Limit(max(few, 0.0), reason))
         rate = Rate.of(candidate)
         if rate is None:
             return suited
@@ -208,6 +204,7 @@ class Tolerances(Limits):
 
     def _in_motion(self, rate: Rate, candidate: "Readings") -> dict[str, Limit]:
         """These limits, and what the speed adds to each."""
+        reasons = {name: limit.reason for name, limit in self.limits().items()}
         along, (size, _) = candidate.running_values, candidate.running_unit
         stations, travel = len(along), float(np.ptp(along)) / size
         adds = rate.lag + rate.inertia
@@ -223,10 +220,10 @@ class Tolerances(Limits):
         transition = self.transition + adds
         unclear = 4 * transition / travel
         return {
-            "rms": Limit(rms, f"{self.rms:.1e} at rest ({_reason(self.rms)}), {what}{most}"),
+            "rms": Limit(rms, f"{self.rms:.1e} at rest ({reasons['rms']}), {what}{most}"),
             "max": Limit(max(self.max, _PEAK * rms), "ten times the rms, as at rest"),
             "transition": Limit(
-                transition, f"{self.transition:.1e} at rest ({_reason(self.transition)}), {what}"
+                transition, f"{self.transition:.1e} at rest ({reasons['transition']}), {what}"
             ),
             "lateness": Limit(
                 rate.lateness,
@@ -326,7 +323,3 @@ def as_limit(name: str, value: float) -> Limit:
 def checked_limits(given: object, kind: type[_Kind]) -> _Kind:
     """What a caller asked for, or the defaults."""
     return kind() if given is None else require("tolerances", given, kind, "see its fields")
-
-
-def _reason(limit: float) -> str:
-    return limit.reason if isinstance(limit, Limit) else ""

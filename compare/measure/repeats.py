@@ -91,6 +91,8 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     )
     scale = np.array([*scales(of_all).values()])
     touching = np.all(np.abs(mean[:, [2, 3]]) > _TOUCHING * scale[1:], axis=1)
+    before = np.cumsum(~touching)  # the longest run: hum has no gaps
+    touching &= before == np.argmax(np.bincount(before[touching]))
     first, last = mean[touching, 0][[0, -1]]
     touching &= ~ends & (np.abs(mean[:, 0] - last) > _NEXT_TO_SNAP_OFF * abs(last - first))
     away, slopes = away[:, touching], slopes[:, touching]

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import gammaincc
 
 from analytic import InputError
+from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
 
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
@@ -53,7 +54,7 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
     """The zero that the free stretches of a pass show, as a line through their means."""
     means, places, uncertain = [], [], []
     slopes, slope_uncertain, remembered = [], [], []
-    steps = np.array([np.nanmin(np.diff(np.unique(row))) for row in values])  # of the converter
+    rounded = np.array([rounding(row) for row in values])
     for which, here in free.items():
         sound = here & np.isfinite(values).all(axis=0)
         if sound.sum() < FEWEST:
@@ -72,7 +73,7 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
             between = np.std(levels, axis=0, ddof=1) / np.sqrt(FEWEST)
             white = values[:, sound].std(axis=1, ddof=1) / np.sqrt(sound.sum())
             slope, known, memory = _slope(foot_x[sound], values[:, sound], levels)
-        uncertain.append(np.max([between, white, steps / np.sqrt(12)], axis=0))
+        uncertain.append(np.max([between, white, rounded], axis=0))
         slopes.append(slope)
         slope_uncertain.append(known)
         remembered.append(memory)

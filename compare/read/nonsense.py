@@ -1,6 +1,6 @@
 """What a pass of a rig cannot be: a contact called free, a stuck channel, a clock that jumps."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -11,10 +11,11 @@ from compare.read.drift import FEWEST
 from compare.read.loaded import loaded_from
 
 _SIGMAS = 6.0  # of the noise
-_UNITS = 30.0  # times the noise, of all three readings; units differ by more
+_UNITS = 30.0  # times the noise, or the readings, of all three; units differ by more
 _DRIFT = 0.25  # of the largest reading; more is no drift of a zero
 _STILL = 10  # rows that are equal, at least, while ...
 _MOVING = 0.1  # ... another reading changes by this part of its largest one
+_OFTEN = 6.0  # times as far as at other levels; a rounded extremum stands still for 4.8 times
 _BACK = 0.02  # of the travel, in one step back
 _BESIDE = 3  # rows on either side of it
 _AHEAD = 0.02  # of the travel, in one step ahead across which ...
@@ -81,24 +82,43 @@ def check_units(values: Floats, stretches: Iterable[Booleans], name: str) -> Non
 
 
 def check_channels(values: Floats, name: str) -> None:
-    """Refuse a channel that stands still while another one moves: it is stuck, or saturates."""
+    """Refuse a channel that stands still while another one moves: it is stuck, or saturates.
+
+    What a coarse converter reads stands still, too, but often.
+    """
     largest = np.nanmax(np.abs(values - np.nanmedian(values, axis=1, keepdims=True)), axis=1)
     for i, reading in enumerate(CLAMP_READINGS):
         row = values[i]
         ends = np.flatnonzero(np.append(np.diff(row) != 0, True))
         begins = np.append(0, ends[:-1] + 1)
+        others, sizes = np.delete(values, i, axis=0), np.delete(largest, i)
+        still = {np.inf: (0.0, 0, 0), -np.inf: (0.0, 0, 0)}  # farthest that others move, by level
         for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
-            if end - begin + 1 < _STILL:
-                continue
-            others = np.delete(values[:, begin : end + 1], i, axis=0)
-            moved = np.nanmax(others, axis=1) - np.nanmin(others, axis=1)
-            if np.any(moved > _MOVING * np.delete(largest, i)):
-                extreme = row[begin] in (np.nanmax(row), np.nanmin(row))
-                doing = "saturates" if extreme and np.ptp(row[np.isfinite(row)]) else "is stuck"
-                what = f"{row[begin]:g} over {end - begin + 1} rows of {name}: it {doing}"
-                allowed = "changing where the other readings do"
-                remedy = "leave the pass out, or repeat it within the sensor's range"
-                raise InputError(reading, what, allowed, remedy)
+            if end > begin:
+                some = others[:, begin : end + 1]
+                moved = (np.nanmax(some, axis=1) - np.nanmin(some, axis=1)) / sizes
+                here = float(np.nanmax(moved, initial=0.0)), begin, end
+                still[row[begin]] = max(here, still.get(row[begin], here))
+        (usual, *_), (most, begin, end) = sorted(still.values())[-2:]
+        if end - begin + 1 >= _STILL and most > max(_MOVING, _OFTEN * usual):
+            extreme = row[begin] in (np.nanmax(row), np.nanmin(row))
+            doing = "saturates" if extreme and np.ptp(row[np.isfinite(row)]) else "is stuck"
+            what = f"{row[begin]:g} over {end - begin + 1} rows of {name}: it {doing}"
+            allowed = "changing where the other readings do"
+            remedy = "leave the pass out, or repeat it within the sensor's range"
+            raise InputError(reading, what, allowed, remedy)
+
+
+def check_sizes(each: Sequence[Floats], names: Sequence[str]) -> None:
+    """Refuse passes to one side of which some have other units, or another gain."""
+    sizes = np.array([np.nanmax(np.abs(values), axis=1, initial=0.0) for values in each])
+    larger = (sizes / sizes.max(axis=0)).max(axis=1)
+    least = int(np.argmin(larger))
+    if larger[least] < 1 / _UNITS:
+        most = names[int(np.argmax(sizes[:, 0]))]
+        what = f"of {names[least]} at most {larger[least]:.1e} times as large as of {most}"
+        remedy = "its units or its gain are others: describe its file by a rig.toml of its own"
+        raise InputError("readings", what, "of much the same size in all passes", remedy)
 
 
 def check_back(foot_x: Floats, name: str) -> None:

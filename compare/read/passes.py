@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
+from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import RawTable, read_text_table
@@ -21,6 +22,7 @@ from compare.read.nonsense import (
     check_drift,
     check_free,
     check_object,
+    check_sizes,
     check_units,
 )
 from compare.read.rig import cells, check_recorded, read_sweeps
@@ -69,6 +71,9 @@ def usable(passes: list[Pass]) -> list[Pass]:
     for one in passes:
         if one.fault is not None:
             raise one.fault
+    for some in swept_alike(passes):
+        each = [[one.readings.values(name) for name in CLAMP_READINGS] for one in some]
+        check_sizes([np.array(values) for values in each], [one.name for one in some])
     return passes
 
 
@@ -179,6 +184,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
             check_drift(zero.drift, values, name)
             with np.errstate(over="ignore"):  # such numbers are refused later
                 known = np.nanstd(values[:, free], axis=1)
+                known = np.maximum(known, [rounding(row) for row in before])
             check_object(values, known, direction, name, "free_before" in stretches)
             provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:

@@ -41,10 +41,16 @@ def scales(reference: Readings) -> dict[str, float]:
 def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:
     """Noise of the two sweeps together, estimated.
 
-    Anything that jumps from station to station counts, as the facets of a coarse mesh do.
+    Anything that jumps from station to station counts, as the facets of a coarse mesh do; of a mean
+    of passes what these scatter by, too, as hum does, which hardly jumps.
     """
-    one, other, scale = reading_noise(reference), reading_noise(candidate), scales(reference)
+    one, other, scale = _seen(reference), _seen(candidate), scales(reference)
     return {name: float(np.hypot(one[name], other[name])) / scale[name] for name in CLAMP_READINGS}
+
+
+def _seen(readings: Readings) -> dict[str, float]:
+    between = readings.provenance.get("scatter", {})
+    return {name: max(x, between.get(name, 0.0)) for name, x in reading_noise(readings).items()}
 
 
 def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:

@@ -10,7 +10,6 @@ from matplotlib.ticker import NullFormatter, NullLocator
 
 from analytic import CLAMP_READINGS, PHASES
 from compare.explain.budget import Budget
-from compare.explain.fit import Suspect
 from compare.explain.motion import MotionBudget
 from compare.explain.parts import UNRESOLVED, Parted, fitted_orders
 from compare.show import style
@@ -42,7 +41,9 @@ def budget_summary(found: Parted) -> Iterator[Block]:
     yield _parts_table(found)
     yield Text("", strong=f"{headline(found)}.")
     if isinstance(found, Budget) and found.suspects:
-        yield Items([_suspect(one) for one in found.suspects])
+        known = [(f"{words(one.name)}, {one.size}", one.share) for one in found.suspects]
+        said = "Suspect: {} in the candidate, accounts for {} of the unexplained."
+        yield Items([said.format(name, percent(share)) for name, share in known])
     if isinstance(found, MotionBudget):
         yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
         if found.left_out:
@@ -89,11 +90,6 @@ def convergence_table(found: Mapping[int, Mapping[str, float]]) -> Table:
         ("segments", *CLAMP_READINGS),
         [(str(n), *(short(rms[r]) for r in CLAMP_READINGS)) for n, rms in found.items()],
     )
-
-
-def _suspect(one: Suspect) -> str:
-    found = f"Suspect: {words(one.name)}, {one.size} in the candidate"
-    return f"{found}, accounts for {percent(one.share)} of the unexplained."
 
 
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar

@@ -61,11 +61,8 @@ def as_toml(tables: Mapping[str, Any]) -> str:
     lines = [f"{_key(k)} = {_value(x)}" for k, x in tables.items() if not isinstance(x, Mapping)]
     for name, table in tables.items():
         if isinstance(table, Mapping):
-            lines += [
-                "",
-                f"[{_key(name)}]",
-                *(f"{_key(k)} = {_value(x)}" for k, x in table.items()),
-            ]
+            lines += ["", f"[{_key(name)}]"]
+            lines += [f"{_key(k)} = {_value(x)}" for k, x in table.items()]
     return "\n".join(lines) + "\n"
 
 

@@ -57,7 +57,7 @@ def document(
             ("budget", "What the disagreement is made of", _parts(budget)),
             *parts,
             ("tolerances", "Tolerances, and why", _limits(found)),
-            ("settings", "Settings and versions", [_settings(reference, found.candidate)]),
+            ("settings", "Settings and versions", _settings(found)),
         ),
         [*tiles],
     )
@@ -178,14 +178,12 @@ def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:
         yield Text(sentence(CONVENTION), aside=True)
 
 
-def _settings(
-    reference: Readings | SpatialReadings, candidate: Readings | SpatialReadings
-) -> Table:
-    sweeps = (_recorded(reference), _recorded(candidate))
+def _settings(found: Comparison | SpatialComparison) -> Iterator[Table]:
+    sweeps = (_recorded(found.reference), _recorded(found.candidate))
     names = dict.fromkeys(name for sweep in sweeps for name in sweep)
     rows = [(words(name), *(sweep.get(name, "") for sweep in sweeps)) for name in names]
-    head = ("", f"reference: {reference.source}", f"candidate: {candidate.source}")
-    return Table("As recorded by the source of each sweep", head, rows, words=(0, 1, 2))
+    head = ("", f"reference: {found.reference.source}", f"candidate: {found.candidate.source}")
+    yield Table("As recorded by the source of each sweep", head, rows, words=(0, 1, 2))
 
 
 def _recorded(readings: Readings | SpatialReadings) -> dict[str, str]:

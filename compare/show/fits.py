@@ -16,8 +16,10 @@ from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
 from analytic.space.from_clamp.noise import COMPONENTS
 from compare.show.document import Block, Table, Text
-from compare.show.numbers import quantity
+from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line
+
+_CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
@@ -29,8 +31,6 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
             "the case says (a sign, a unit, the object's place), and what follows is not to be "
             "trusted. `vibrissa compare` looks for the cause."
         )
-        if calibration.both_ways and LAG not in calibration.found:
-            yield Text("  Passes both ways show whether readings lag behind the foot: fit lag too.")
     rows = []
     for name, found in calibration.found.items():
         unit = QUANTITIES["foot_x" if name in OF_THE_FOOT else name].dimension if si else ""
@@ -44,7 +44,7 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
         head, of = [*head, "passes scatter by"], f" of {len(passes.numbers)} passes"
     yield Table(f"From {calibration.stations} stations{of}", head, rows, words=(0, 4))
     if passes is not None:
-        yield from _of_passes(passes)
+        yield from _of_passes(calibration, passes)
         if not passes.consistent:
             yield Text(
                 "what the passes scatter by says more than the intervals, which are of noise"
@@ -58,6 +58,8 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     if calibration.undistinguished is not None:
         yield from map(Text, calibration.undistinguished.said())
     yield from _left(calibration)
+    if not calibration.explains and calibration.both_ways and LAG not in calibration.found:
+        yield Text("passes both ways show whether readings lag behind the foot: fit lag too")
     if calibration.jitter:
         unit = " m" if si else ""
         yield Text(f"the foot jitters by {calibration.jitter:.2g}{unit}; the intervals know it")
@@ -88,7 +90,7 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
             words=(0, 2),
         )
     if isinstance(found, FittedObject) and found.passes is not None:
-        yield from _of_passes(found.passes)
+        yield from _of_passes(found, found.passes)
     yield from _left(found)
     if not found.explains:
         yield Text(
@@ -124,32 +126,18 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
         "case": calibration.case.name,
         "found": calibration.found,
         "correlation": calibration.correlation.tolist(),
-        "stations": calibration.stations,
-        "misfit": calibration.misfit,
+        **picked(calibration, "stations", "misfit"),
         "noise_correlation": dict(zip(CLAMP_READINGS, correlation, strict=True)),
         "hum_stations": calibration.noise.hum or None,
-        "jitter": calibration.jitter,
-        "undistinguished": calibration.undistinguished,
-        "passes": passes
-        and {
-            "scatter": calibration.scatter,
-            "chi_square": passes.chi_square,
-            "degrees": passes.degrees,
-            "probability": passes.probability,
-            "alike": passes.alike,
-        },
+        **picked(calibration, "jitter", "undistinguished"),
+        "passes": passes and {"scatter": calibration.scatter, **picked(passes, *_CONSISTENCY)},
     }
 
 
 def object_document(found: FittedObject | FittedBody) -> dict[str, Any]:
-    document: dict[str, Any] = {
-        "family": found.family,
-        "found": found.found,
-        "explains": found.explains,
-        "misfit": found.misfit,
-        "stations": found.stations,
-        "rivals": {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()},
-    }
+    document = picked(found, "family", "found", "explains", "misfit", "stations")
+    rivals = {name: {"bic": bic, "explains": x} for name, (bic, x) in found.rivals.items()}
+    document["rivals"] = rivals
     if isinstance(found, FittedBody):
         return document
     return document | {
@@ -163,9 +151,7 @@ def band_document(found: ConvexBand) -> dict[str, Any]:
     """What ``object.json`` holds of the two bodies, which are in files of their own."""
     return {
         "family": "convex",
-        "explains": found.explains,
-        "stations": found.stations,
-        "half_width": found.half_width,
+        **picked(found, "explains", "stations", "half_width"),
         "box": found.box.tolist(),
         "inner_volume": volume(found.inner),
         "outer_volume": volume(found.outer),
@@ -174,8 +160,11 @@ def band_document(found: ConvexBand) -> dict[str, Any]:
     }
 
 
-def _of_passes(passes: Consistency) -> Iterator[Text]:
+def _of_passes(found: Calibration | FittedObject, passes: Consistency) -> Iterator[Text]:
     yield Text(consistency_line(passes))
+    # What is left and no noise makes the intervals wider than passes scatter, too.
+    if passes.too_alike and found.explains and not found.noise.remembers.any():
+        yield Text("  they differ by less: noise, or zeros, are taken for larger than they are")
     if passes.leave_alike:
         yield Text(
             f"what is left is alike in all of them (p = {passes.alike:.2g}), so it is no noise: "

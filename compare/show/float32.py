@@ -22,17 +22,13 @@ def sentence(evaluator: str, found: pd.DataFrame) -> str:
 
 def losses_table(evaluator: str, found: pd.DataFrame, case: str) -> Table:
     """What is lost by contact stiffness, and what was predicted of it."""
-    rows = [
-        (
-            f"{row['contact_stiffness']:g}",
-            short(row["depth"]),
-            short(row["resolution"]),
-            f"{row['lost']} of {row['stations']} ({row['predicted_lost']:.1f})",
-            f"{short(row['force_error'])} ({short(row['predicted_force_error'])})",
-            f"{short(row['imbalance'])} ({short(row['predicted_imbalance'])})",
-        )
-        for row in found.to_dict("records")
-    ]
+    rows = []
+    for row in found.to_dict("records"):
+        lost = f"{row['lost']} of {row['stations']} ({row['predicted_lost']:.1f})"
+        found_and_due = ((row[n], row[f"predicted_{n}"]) for n in ("force_error", "imbalance"))
+        off = (f"{short(size)} ({short(due)})" for size, due in found_and_due)
+        sizes = short(row["depth"]), short(row["resolution"])
+        rows.append((f"{row['contact_stiffness']:g}", *sizes, lost, *off))
     caption = (
         f"{case}: MuJoCo's states at rest by {evaluator}, found (predicted in single precision); "
         "lost: stations; force: over the largest load; L = EI = 1"

@@ -1,6 +1,6 @@
 """Numbers and names as people read them."""
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from analytic import Beam, Readings
 from analytic.space import SpatialReadings
@@ -36,6 +36,11 @@ def sentence(text: str) -> str:
     """A clause as a sentence, without the marks of code that a terminal and Markdown have."""
     text = text.replace("`", "")
     return text and f"{text[0].upper()}{text[1:].rstrip('.')}."
+
+
+def picked(of: object, *names: str) -> dict[str, Any]:
+    """Some of a record's fields, as a file holds them."""
+    return {name: getattr(of, name) for name in names}
 
 
 def object_of(readings: Readings | SpatialReadings) -> str:

@@ -12,7 +12,7 @@ from analytic.from_clamp.passes import Consistency
 from compare.measure.repeats import Repeats
 from compare.read.passes import Pass
 from compare.show.document import Block, Table, Text
-from compare.show.numbers import quantity
+from compare.show.numbers import picked, quantity
 
 _DRIFTS = 0.01  # of the largest reading: more than the noise of most sensors
 _UNLIKE = 0.05  # of the contact; where the vibrissa lets go passes are unlike, too
@@ -86,9 +86,6 @@ def consistency_line(found: Consistency, names: Sequence[str] | None = None) -> 
     count = len(found.numbers)
     of = f"chi square {found.chi_square:.3g} of {found.degrees} degrees of freedom"
     said = f"{of}, p = {found.probability:.2g}"
-    if found.too_alike:
-        less = "less than their noise and zeros would have them"
-        return f"{count} passes differ by {less} ({said}): one of these is stated too large"
     if found.consistent:
         return f"{count} passes say the same ({said})"
     farthest = f"pass {found.farthest + 1}" if names is None else names[found.farthest]
@@ -104,11 +101,7 @@ def passes_document(
     said = ("name", "direction", "rows", "kept", "dropped", "sorted", "zero", "drift", "bends")
     return {
         "passes": [
-            {
-                **{name: getattr(one, name) for name in said},
-                "gaps": one.record.gaps,
-                "widest_step": one.record.widest,
-            }
+            picked(one, *said) | {"gaps": one.record.gaps, "widest_step": one.record.widest}
             for one in passes
         ],
         "lag": lag and asdict(lag),
@@ -119,8 +112,7 @@ def passes_document(
                 "shift_uncertainty": (1.96 * repeated.uncertainty).tolist(),
                 "rms": repeated.rms.tolist(),
                 "rms_without_shift": repeated.rms_without_shift.tolist(),
-                "chi_square": repeated.shifts.chi_square,
-                "probability": repeated.shifts.probability,
+                **picked(repeated.shifts, "chi_square", "probability"),
             }
             for repeated in found
         ],

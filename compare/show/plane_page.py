@@ -41,7 +41,7 @@ def plane_document(
     comparison: Comparison, budget: Budget | None = None, film: Film | None = None
 ) -> Document:
     found = plane_verdict(comparison, budget)
-    remarks = [*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
+    remarks = [*found.remarks, *scope(comparison), *[*validation_lines(comparison)][:1]]
     validation = "Validation: the disagreement against its uncertainty"
     return common.document(
         comparison,

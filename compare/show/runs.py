@@ -18,12 +18,9 @@ from compare.show.side_by_side import outcomes_table, parts_table, reasons
 def runs_document(folder: Path) -> Document:
     runs, engines = read_runs(folder), read_engines(folder)
     if not runs and not engines:
-        raise InputError(
-            "DIR",
-            folder,
-            "the folder of a run or a study, or a folder with runs in it",
-            "make one: vibrissa run CASE --budget --out DIR/CASE",
-        )
+        allowed = "the folder of a run or a study, or a folder with runs in it"
+        remedy = "make one: vibrissa run CASE --budget --out DIR/CASE"
+        raise InputError("DIR", folder, allowed, remedy)
     agree = [run.agrees for run in runs]
     agree += [engine.agrees for one in engines for engine in one.engines]
     by_case = enumerate(groupby(runs, key=lambda run: run.case), 1)
@@ -50,41 +47,18 @@ def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
     if compared:
         run = max(compared, key=lambda run: run.worst[0])
         error, name = run.worst
-        yield (
-            f"The largest rms is {short(error)} of the largest magnitude ({name}, {run.case}, "
-            f"{run.beam})."
-        )
+        where = f"{name}, {run.case}, {run.beam}"
+        yield f"The largest rms is {short(error)} of the largest magnitude ({where})."
     budgets = [run.budget for run in runs if run.budget is not None]
     if budgets:
-        worst_explained = max(budgets, key=lambda one: one.left.rms)
-        closed = sum(one.closes for one in budgets)
-        yield (
-            f"{closed} of {len(budgets)} budgets close; at most {left_over(worst_explained)} is "
-            "unexplained."
-        )
+        most = left_over(max(budgets, key=lambda one: one.left.rms))
+        closed = f"{sum(one.closes for one in budgets)} of {len(budgets)} budgets close"
+        yield f"{closed}; at most {most} is unexplained."
 
 
 def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
-    if runs:
-        yield _runs_table(runs)
-        yield Text(
-            "Disagreements are rms over the stations in contact, of each reading's largest "
-            "magnitude. A budget closes if what is unexplained is small and within its uncertainty "
-            f"(and {short(UNRESOLVED)}).",
-            aside=True,
-        )
-
-
-def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
-    yield Text(f"{runs[0].profile}.")
-    for run in runs:
-        if run.budget is not None:
-            shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
-            caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
-            yield Image(run.folder / "budget.png", shows, caption)
-
-
-def _runs_table(runs: Sequence[RunRecord]) -> Table:
+    if not runs:
+        return
     components = dict.fromkeys(CLAMP_READINGS)
     components |= dict.fromkeys(name for run in runs for name in run.rms)
     rows = [
@@ -104,7 +78,22 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
         "case", "beam", "segments", *components, "snap-off apart / L", "phases right",
         "largest part", "unexplained", "ms a station",
     )  # fmt: skip
-    return Table("Each run against its closed form", head, rows, words=(0, 1, len(head) - 3))
+    yield Table("Each run against its closed form", head, rows, words=(0, 1, len(head) - 3))
+    yield Text(
+        "Disagreements are rms over the stations in contact, of each reading's largest magnitude. "
+        "A budget closes if what is unexplained is small and within its uncertainty (and "
+        f"{short(UNRESOLVED)}).",
+        aside=True,
+    )
+
+
+def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
+    yield Text(f"{runs[0].profile}.")
+    for run in runs:
+        if run.budget is not None:
+            shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
+            caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
+            yield Image(run.folder / "budget.png", shows, caption)
 
 
 def _largest_and_left(budget: Parted | None) -> tuple[str, str]:

@@ -175,14 +175,11 @@ def outcomes_table(
 
 
 def _outcome(one: EngineOutcome) -> tuple[str, ...]:
+    rms = (short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS)
     seconds = one.seconds_a_station
-    return (
-        one.label,
-        *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
-        short(one.snap_off_apart),
-        "none" if seconds is None else f"{1e3 * seconds:.2g}",
-        "no readings" if one.trouble else "agrees" if one.agrees else "disagrees",
-    )
+    time = "none" if seconds is None else f"{1e3 * seconds:.2g}"
+    said = "no readings" if one.trouble else "agrees" if one.agrees else "disagrees"
+    return (one.label, *rms, short(one.snap_off_apart), time, said)
 
 
 def reasons(found: Iterable[EngineOutcome]) -> Iterator[Items]:
@@ -250,12 +247,8 @@ def _fairness(found: SideBySide) -> Iterator[Block]:
 def error_against_time(found: SideBySide) -> Figure:
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     ax = figure.subplots()
-    ax.set(
-        xscale="log",
-        yscale="log",
-        xlabel="processor time a station [ms], building the model included",
-        ylabel="rms relative to the largest magnitude",
-    )
+    ax.set(xscale="log", yscale="log", ylabel="rms relative to the largest magnitude")
+    ax.set_xlabel("processor time a station [ms], building the model included")
     ax.set_title(f"{style.label(found.case)}: error against time", fontsize=style.LARGE)
     for one in found.outcomes:
         if one.rms is None:

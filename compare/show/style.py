@@ -22,18 +22,9 @@ PHASE_NAMES = {"free": "free", "tip": "A: tip contact", "tangent": "B: tangentia
 
 READING_COLOURS = {"force_x": BLUE, "force_y": ORANGE, "moment_z": GREEN}
 READING_MARKERS = {"force_x": "o", "force_y": "s", "moment_z": "^"}
-SYMBOLS = {
-    "force_x": "force_x",
-    "force_y": "force_y",
-    "moment_z": "moment_z",
-    "contact_arc_length": "$s_1$",
-}
-UNITS = {
-    "force_x": "$EI/L^2$",
-    "force_y": "$EI/L^2$",
-    "moment_z": "$EI/L$",
-    "contact_arc_length": "$L$",
-}
+SYMBOLS = {name: name for name in READING_COLOURS} | {"contact_arc_length": "$s_1$"}
+UNITS = dict.fromkeys(("force_x", "force_y"), "$EI/L^2$")
+UNITS |= {"moment_z": "$EI/L$", "contact_arc_length": "$L$"}
 FOOT = "foot_x / $L$"
 
 

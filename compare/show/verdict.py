@@ -148,11 +148,6 @@ _REMEDIES = {
 _PLAIN = {NOISE: "noise of the data", NUMERICS: "the simulation's numerics"}
 
 
-def validation_lines(comparison: Comparison) -> list[str]:
-    found = comparison.validation
-    return [] if found is None else [*_lines(found, comparison.reference.beam)]
-
-
 def validation_claim(found: Validation) -> str:
     """Whether a disagreement says anything, in a sentence."""
     is_it = "is resolved: only" if found.resolved else "is not resolved:"
@@ -170,7 +165,10 @@ def standard_of(name: str, value: float, beam: Beam) -> str:
     return f"{value:.3g} {dimension}".rstrip() if beam.si else f"{value:.3g}"
 
 
-def _lines(found: Validation, beam: Beam) -> Iterator[str]:
+def validation_lines(comparison: Comparison) -> Iterator[str]:
+    """What a validation comes to, if there is one."""
+    if (found := comparison.validation) is None:
+        return
     whole = found.whole
     sizes = (
         f"E = {short(whole.error)} rms against {short(whole.limit)} = {whole.coverage:.2f} u_val "
@@ -193,7 +191,7 @@ def _lines(found: Validation, beam: Beam) -> Iterator[str]:
             "so this says what an experiment with such inputs could see."
         )
     if whole.u_val > 0:
-        yield _dominant(found, beam)
+        yield _dominant(found, comparison.reference.beam)
     yield (
         f"Noise: {found.noise_source}. Numerics: {found.numerics_source}. The sensitivities miss "
         f"{found.second_order:.0%} of what {found.samples} samples of the inputs do, "
@@ -221,37 +219,29 @@ def _dominant(found: Validation, beam: Beam) -> str:
 
 def validation_tables(found: Validation, beam: Beam) -> Iterator[Table | Text]:
     """E and its uncertainty by reading, what makes the latter, and what is left out."""
+    rows: list[tuple[str, ...]] = []
+    for name, one in {**found.by_reading, "all, correlated": found.whole}.items():
+        sizes = map(short, (one.error, one.u_num, one.u_input, one.u_data, one.u_val))
+        said = "resolved" if one.resolved else "not resolved"
+        rows.append((name, *sizes, f"{one.coverage:.2f}", short(one.limit), said))
     yield Table(
         "Simulation less data, E = S - D, and its uncertainty (ASME V&V 20), root mean square of "
         f"{found.stations} stations, relative to each reading's largest magnitude; E of a right "
         "model is below k u_val in 95 % of all cases",
         ("", "E", "u_num", "u_input", "u_D", "u_val", "k", "k u_val", "disagreement"),
-        [
-            (
-                name,
-                *(short(x) for x in (one.error, one.u_num, one.u_input, one.u_data, one.u_val)),
-                f"{one.coverage:.2f}",
-                short(one.limit),
-                "resolved" if one.resolved else "not resolved",
-            )
-            for name, one in {**found.by_reading, "all, correlated": found.whole}.items()
-        ],
+        rows,
         words=(0, 8),
         whole=[len(found.by_reading)],
     )
-    shares = found.whole.shares
+    shares, rows = found.whole.shares, []
+    for name, share in shares.items():
+        known = standard_of(name, found.standard[name], beam) if name in found.standard else ""
+        each = (percent(one.shares[name]) for one in found.by_reading.values())
+        rows.append((words(name), known, percent(share), *each))
     yield Table(
         "What makes u_val squared; an input is off by the same at all stations",
         ("uncertain", "standard uncertainty", "share", *found.by_reading),
-        [
-            (
-                words(name),
-                standard_of(name, found.standard[name], beam) if name in found.standard else "",
-                percent(share),
-                *(percent(one.shares[name]) for one in found.by_reading.values()),
-            )
-            for name, share in shares.items()
-        ],
+        rows,
         blamed=[i for i, name in enumerate(shares) if name == found.dominant],
     )
     left = found.left_out

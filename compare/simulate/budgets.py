@@ -7,8 +7,13 @@ from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
-from compare.explain.budget import Budget, budget, controlled_changes
-from compare.explain.in_space import budget_in_space, changes_in_space
+from compare.explain.budget import (
+    Budget,
+    budget,
+    budget_in_space,
+    changes_in_space,
+    controlled_changes,
+)
 from compare.explain.motion import MotionBudget
 from compare.explain.parts import Parted
 from compare.explain.variations import on_polygon, variations
@@ -85,7 +90,8 @@ def measure_budget(
         If a sweep that the budget cannot do without is not a number any more.
     """
     if isinstance(case, SpatialCase):
-        require_rest(motion)
+        if motion is not None:  # whose disagreement nothing splits
+            raise InputError("motion", "given", "none for a budget in space", "take it at rest")
         chosen = SpatialSettings() if settings is None else settings
         return _in_space(case, require("settings", chosen, SpatialSettings, _REMEDY), advance)
     chosen = Settings() if settings is None else settings
@@ -96,12 +102,6 @@ def measure_budget(
 
 
 _REMEDY = "take Settings in the plane, SpatialSettings in space"
-
-
-def require_rest(motion: Motion | None) -> None:
-    """Refuse a motion in space, whose disagreement nothing splits."""
-    if motion is not None:
-        raise InputError("motion", "given", "none for a budget in space", "take it at rest")
 
 
 def _in_space(

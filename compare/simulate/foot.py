@@ -24,6 +24,7 @@ _SWINGS, _STIFF = (
 # where it first touches: one of 54 stations, so that it makes one per cent. Of two carriages of
 # 0.36 T1 force_x was 2 per cent off, of 0.07 and 0.03 T1 0.2.
 _LATE, _STARTS, _PROMPT = 5e-3, 0.07, 1e-3
+_TURNS = 1e-4  # relative, in EI; what turns by less is rounding
 _PULLS = 100.0  # of a sweep's force; a sensor on a foot that nothing drives feels 1e-4 of it
 
 
@@ -68,9 +69,9 @@ def _hand(found: MeasuredBeam) -> Iterator[Remark]:
     if gives > SINKS or softer > RIGIDITY:
         through = ", ".join(map(repr, hand.joints[:4]))
         where = "the weld of " if hand.welds else ""
-        turns = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > 0 else ""
+        spring = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > _TURNS else ""
         yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
-                     f": it {turns}moves by {gives:.1e} L under {FORCE:g} EI/L^2",
+                     f": it {spring}moves by {gives:.1e} L under {FORCE:g} EI/L^2",
                      edits=held(found))  # fmt: skip
 
 

@@ -92,14 +92,17 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
     steps = treatment.steps(found) if said else ()
     # One that is damped more swings as little as a critical one with its damper, and is as hard.
     over = max(1.0, *(geom.damping_ratio for geom in meeting)) ** 2
-    chatters = rubs**2 * hard * over * decay * found.period > HARDEST_RUBBING
+    most = np.sqrt(HARDEST_RUBBING / (hard * over * decay * found.period))
+    chatters = rubs > most
     if rubs > 0 and (found.cone == "pyramidal" or (chatters and rubs == 1)):
         which, cone = ", MuJoCo's default," if rubs == 1 else "", found.cone
         yield Remark("fault", "contact", f"friction {rubs:g}{which} by a {cone} cone chatters",
                      edits=treatment.frictionless(found))  # fmt: skip
     elif chatters:
-        said.append(f"friction {rubs:g} chatters in contacts of {hard:.2g} EI/L^3 whose damper "
-                    f"acts within {1 / decay / found.period:.2g} T1")  # fmt: skip
+        said.append(
+            f"friction {rubs:g} chatters in contacts of {hard:.2g} EI/L^3 whose damper "
+            f"acts within {1 / decay / found.period:.2g} T1, more than {most:.2g} does"
+        )
     elif rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "
                      'condim="1"')  # fmt: skip

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from analytic.problem.beam import Beam
 from analytic.space.checks.rod import integrate_rod
-from compare.show.document import Document, Items, Section, Table, Verdict
+from compare.show.document import Document, Items, Table, Verdict, sections
 from compare.verify import rods
 from mujoco_models import Settings, load_tip
 
@@ -94,18 +94,12 @@ def _cosseratbench_twist() -> list[PeerRow]:
         def theirs(tension: float = tension) -> float:
             return float(import_module("cosseratbench.experiments.twist").critical_moment(tension))
 
+        exact = float(brentq(_buckles, *between, args=(tension,), xtol=1e-10))
+        about, why = "cosseratbench", "PyElastica reaches 0.978, 0.989, 0.991 of it"
         rows.append(
-            PeerRow(
-                "cosseratbench",
-                "twist",
-                f"critical moment at tension {tension:.2g}",
-                published,
-                *_run("cosseratbench", theirs),
-                float(brentq(_buckles, *between, args=(tension,), xtol=1e-10)),
-                None,
-                "a rod in space integrated; PyElastica reaches 0.978, 0.989, 0.991 of it",
-            )
-        )
+            PeerRow(about, "twist", f"critical moment at tension {tension:.2g}", published,
+                    *_run(about, theirs), exact, None, f"a rod in space integrated; {why}")
+        )  # fmt: skip
     return rows
 
 
@@ -210,19 +204,12 @@ CASES = (
 def summary(rows: Sequence[PeerRow]) -> tuple[Table, Items]:
     """One line a number of theirs, and what could not be run."""
     head = ("peer and number", "published", "theirs here", "exact", "our chain")
-    lines = [
-        (
-            *(f"{row.peer}: {row.what}", row.published[:11], _number(row.run)),
-            *(_number(row.exact), _number(row.mujoco)),
-        )
-        for row in rows
-    ]
+    lines = []
+    for row in rows:
+        numbers = ("" if x is None else f"{x:.7g}" for x in (row.run, row.exact, row.mujoco))
+        lines.append((f"{row.peer}: {row.what}", row.published[:11], *numbers))
     table = Table("What peers publish of their own cases, and what is found here", head, lines)
     return table, Items(list(dict.fromkeys(filter(None, (row.trouble for row in rows)))))
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.7g}"
 
 
 def page(rows: Sequence[PeerRow]) -> Document:
@@ -230,12 +217,8 @@ def page(rows: Sequence[PeerRow]) -> Document:
     ran = sum(row.run is not None for row in rows)
     said = Verdict(ran == len(rows), f"{ran} of {len(rows)} numbers were made by their engines.")
     lead = "What other projects publish of their own test cases, beside what is computed here."
-    return Document(
-        "Peers' own cases",
-        lead,
-        said,
-        [
-            Section("numbers", "Number by number", summary(rows)),
-            Section("reasons", "Why they differ", [reasons]),
-        ],
+    parts = (
+        ("numbers", "Number by number", summary(rows)),
+        ("reasons", "Why they differ", [reasons]),
     )
+    return Document("Peers' own cases", lead, said, sections(*parts))

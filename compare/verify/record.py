@@ -92,19 +92,10 @@ def _judged(
         state = row.get("state", "explained")
     agree = whole if missed <= _EDGE * last else min(whole, _digits(missed / abs(theirs)))
     why = row.get("why", "" if state == "all digits" else source.get("why", ""))
-    return Row(
-        source["name"],
-        source["cite"],
-        source.get("contact", False),
-        row["what"],
-        printed or row["against"],
-        theirs,
-        ours,
-        agree,
-        state,
-        why,
-        explained[row["value"]] if "because" in row else None,
-    )
+    about = source["name"], source["cite"], source.get("contact", False), row["what"]
+    because = explained[row["value"]] if "because" in row else None
+    quoted = printed or row["against"]
+    return Row(*about, quoted, theirs, ours, agree, state, why, because)
 
 
 def _digits(relative: float) -> int:
@@ -175,13 +166,10 @@ def verdict(rows: Sequence[Row]) -> Verdict:
 
 
 def table(rows: Sequence[Row]) -> Table:
-    lines = [
-        (
-            *(row.source, row.what, row.quoted, f"{row.ours:.{max(row.digits + 2, 5)}g}"),
-            *(str(row.digits), ": ".join(filter(None, (row.state, _why(row))))),
-        )
-        for row in rows
-    ]
+    lines = []
+    for row in rows:
+        ours, why = f"{row.ours:.{max(row.digits + 2, 5)}g}", filter(None, (row.state, _why(row)))
+        lines.append((row.source, row.what, row.quoted, ours, str(row.digits), ": ".join(why)))
     head = ("source", "number", "quoted", "here", "digits", "why not more")
     blamed = [number for number, row in enumerate(rows) if row.state == "differs"]
     return Table("What was quoted, and what is found", head, lines, (0, 1, 5), blamed)

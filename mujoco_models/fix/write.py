@@ -76,7 +76,7 @@ class Texts:
         if None in found:
             raise InputError(
                 "--write", f"{edit.kind} {edit.numbers[found.index(None)]} of the model",
-                "to be seen in its file",
+                "one that its file states",
                 "another element makes it, or <compiler> discards or fuses what stands beside it: "
                 f"set {edit} there",
             )  # fmt: skip
@@ -139,8 +139,12 @@ class Texts:
             return
         element = self._places.element("body", new.body)
         if element is None or element.model:
-            raise InputError("--write", f"body {new.body}", "to be seen in the model's own file",
-                             f"put {new.text} into it")  # fmt: skip
+            name = self._places.model.body(new.body).name or new.body
+            raise InputError(
+                "--write", f"body {name!r}", "one that the model's own file states",
+                f"put {new.text} into a body there, and what another element or file makes into "
+                "that",
+            )  # fmt: skip
         self._put_into(element, new.text)
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)

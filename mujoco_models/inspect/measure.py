@@ -277,19 +277,23 @@ def _bent(
 
 def _sag(held: Held, axes: Floats) -> tuple[float, float]:
     """How far gravity moves the tip, and what the force sensor reads of it in the plane."""
-    start = held.tip
-    for share in _SHARES:  # what hangs by far comes to rest from how it hung by less
-        held.model.opt.gravity[:] = share * held.gravity
-        held.rest()
-    sag = float(np.linalg.norm(held.tip - start))
-    sensor = held.parts.force
-    weight = 0.0
-    if sensor is not None:
-        _, turn = held.site(sensor)
-        weight = float(np.linalg.norm(axes[:2] @ turn @ held.sensed(sensor)))
+    gravity = axes @ held.gravity
+    start, sensor = held.tip, held.parts.force
+    mass = float(held.model.body_mass[list(held.parts.chain)].sum())
+    sag, weight = float(np.linalg.norm(held.tip - held.clamp)), mass * np.hypot(*gravity[:2])
+    try:
+        for share in _SHARES:  # what hangs by far comes to rest from how it hung by less
+            held.model.opt.gravity[:] = share * held.gravity
+            held.rest()
+        sag = float(np.linalg.norm(held.tip - start))
+        if sensor is not None:
+            _, turn = held.site(sensor)
+            weight = float(np.linalg.norm(axes[:2] @ turn @ held.sensed(sensor)))
+    except InputError:  # so heavy that it hangs like a chain
+        pass
     held.model.opt.gravity[:] = 0
     held.unload()
-    return sag, weight
+    return sag, 0.0 if sensor is None else weight
 
 
 def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:

@@ -188,9 +188,15 @@ class UserModelInMotion(SteppedModel):
         return {
             **self._touched(),
             "tip_angle": self._tip_angle(),
-            "status": "ok",
+            "status": "touches another" if self._touches_another() else "ok",
             "kinetic_share": self._kinetic_share(),
         }
+
+    def _touches_another(self) -> bool:
+        """Whether a loaded contact is of vibrissa or object, and not of both."""
+        of_object = (self.data.contact.geom == self._object).any(axis=1).tolist()
+        other = [i for i, on_object in enumerate(of_object) if self._skin.has(i) != on_object]
+        return bool((self._forces(other)[:, 0] > 0).any())
 
     def _touched(self) -> dict[str, Any]:
         numbers, forces = self._loaded()

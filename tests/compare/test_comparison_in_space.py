@@ -19,7 +19,7 @@ from analytic.space import (
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
 from compare import SpatialTolerances, assert_agreement, compare, measure_budget
 from compare.align.frames import COMPONENTS, clamp_axes, components, from_frame
-from compare.explain.in_space import budget_in_space, changes_in_space
+from compare.explain.budget import budget_in_space, changes_in_space
 from compare.show.report import summary_of
 from compare.show.spatial_page import spatial_verdict
 from mujoco_models import SpatialSettings

@@ -136,7 +136,7 @@ def _knowing_the_noise(
     measured = fit.measured
     curved = (measured.bend >= measured.zero).any()  # less of a curve than of a zero is none
     shapes, uncertain = [np.ones(sum(measured.rows))], [measured.zero]
-    along = np.concatenate([np.linspace(-1, 1, n) for n in measured.rows])
+    along = measured.along
     if len(measured.rows) > 1 or measured.bend.any():
         shapes, uncertain = [*shapes, along], [measured.zero, measured.zero]
     if measured.bend.any():

@@ -33,8 +33,6 @@ class LeastSquaresFit(ABC):
     foot position; both enter the station's covariance.
     """
 
-    start: Floats
-
     def __init__(self, measured: Measured, given: Case, kinds: Sequence[Number]) -> None:
         self.measured, self.given, self.kinds = measured, given, kinds
         self.lowest = np.array([kind.lowest for kind in kinds])
@@ -63,15 +61,9 @@ class LeastSquaresFit(ABC):
     def sought(self, numbers: Floats) -> Sought:
         """What these numbers make of the case."""
 
+    @abstractmethod
     def starts(self) -> list[Floats]:
-        """From where the best numbers are sought: the case's own, and others, one by one."""
-        this = np.eye(len(self.start), dtype=bool)
-        others = (
-            np.where(this[i], number, self.start)
-            for i, kind in enumerate(self.kinds)
-            for number in kind.starts
-        )
-        return [self.start, *others]
+        """From where the best numbers are sought."""
 
     def of(self, measured: Measured) -> Self:
         """The same of other readings."""
@@ -199,8 +191,16 @@ class VibrissaFit(LeastSquaresFit):
         self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
 
     def starts(self) -> list[Floats]:
-        """And the case's own at the offset at which its readings are most like those measured."""
-        named, found = [kind.name for kind in self.kinds], super().starts()
+        """The case's own, others one by one, and that of the most likely offset."""
+        named, this = [kind.name for kind in self.kinds], np.eye(len(self.start), dtype=bool)
+        found = [
+            self.start,
+            *(
+                np.where(this[i], number, self.start)
+                for i, kind in enumerate(self.kinds)
+                for number in kind.starts
+            ),
+        ]
         if OFFSET in named:
             found.append(self.start.copy())
             found[-1][named.index(OFFSET)] = self._offset()

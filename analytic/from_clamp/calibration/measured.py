@@ -23,6 +23,7 @@ _LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so
 _SIGMAS = 5.0  # of its noise; a force of less is none
 _NEXT_TO_SNAP_OFF = 0.02  # of the loaded travel, where readings grow without bound: left out
 _PER_UNKNOWN = 5  # loaded stations at least
+_MOST_ALIKE = 1 - 1e-6  # neighbours; more would divide by nothing
 _DECADES = 6  # by which loads may differ from EI/L^2 and EI/L; else the units do
 
 
@@ -34,6 +35,7 @@ class Measured:
     readings: Floats  # shape (3, n); Force and moment at the clamp
     spread: Floats  # shape (4,); Standard deviation of the foot position and of the three readings
     rows: tuple[int, ...]  # how many stations each pass has
+    ends: tuple[tuple[float, float], ...]  # where the foot of each pass starts and stops [length]
     zero: Floats  # shape (3,); standard uncertainty of the zero of each reading
     bend: Floats  # shape (3,); the same of a bend of its drift, in the middle of a pass
     # Shape (3,); of the free stretches' noise, if that counts: it may hum, or remember, so that it
@@ -58,6 +60,7 @@ class Measured:
             np.concatenate([one.readings for one in each], axis=1),
             np.sqrt(np.mean([one.spread**2 for one in each], axis=0)),
             tuple(n for one in each for n in one.rows),
+            tuple(ends for one in each for ends in one.ends),
             np.sqrt(np.mean([one.zero**2 for one in each], axis=0)),
             np.sqrt(np.mean([one.bend**2 for one in each], axis=0)),
             np.sqrt(np.mean([one.free**2 for one in each], axis=0)),
@@ -68,6 +71,12 @@ class Measured:
     def passes(self) -> list[slice]:
         ends = np.cumsum(self.rows).tolist()
         return [slice(end - n, end) for n, end in zip(self.rows, ends, strict=True)]
+
+    @property
+    def along(self) -> Floats:
+        """Share of each station's pass, from -1 at its start to 1, shape (n,)."""
+        each = zip(self.passes, self.ends, strict=True)
+        return np.concatenate([(2 * self.foot_x[x] - a - b) / (b - a) for x, (a, b) in each])
 
     @property
     def ways(self) -> list[Direction]:
@@ -145,13 +154,15 @@ def measured_under_load(
     free = free if stated is None else np.zeros(3)
     # From row to row there is 1 - rho of the variance of a[i + 1] = rho a[i] + white, of which as
     # many rows say (1 - rho^2) / (1 + rho^2) times as much as of white noise.
-    rho = 1 - (spread[1:] / np.maximum(spread[1:], free)) ** 2
+    rho = np.minimum(1 - (spread[1:] / np.maximum(spread[1:], free)) ** 2, _MOST_ALIKE)
     unloaded = max(int(readings.trusted.sum()) - len(loaded), 1)
     repeats = np.mean(rho**2 * (1 + rho**2) / (1 - rho**2)) / len(CLAMP_READINGS)
     vague = float(repeats * (1 / len(order) + 1 / unloaded))
     spread[1:] = np.maximum(spread[1:], free)
     bend, rows = bend_uncertainty(readings), (len(order),)
-    return Measured(x[order], found, spread, rows, zero, bend, free, vague)
+    start, stop = x[readings.trusted][[0, -1]].tolist()
+    ends = ((start, stop),)
+    return Measured(x[order], found, spread, rows, ends, zero, bend, free, vague)
 
 
 def _kept(readings: Readings, loaded: Integers) -> Integers:

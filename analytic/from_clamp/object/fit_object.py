@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 FAMILIES = ("circle", "ellipse", "superellipse", "convex")
 _FEWEST = 8  # contact points
+_WIDER = 1.0, 2.0, 4.0  # circles than that through points, from which a fit starts
 _BAND = 181  # points of the band
 _STEP = 1e-5  # of a number, for a derivative
 
@@ -87,13 +88,17 @@ class ObjectFit(LeastSquaresFit):
         measured: Measured,
         given: Case,
         family: Family,
-        start: Floats,
+        objects: Sequence[Floats],
         beside: Sequence[Unknown],
     ) -> None:
         super().__init__(measured, given, (*family.kinds, *beside))
-        self.family, self.beside = family, beside
-        others = [one.now(Sought(given), given) for one in beside]
-        self.start = np.clip(np.append(start, others), self.lowest, self.highest)
+        self.family, self.beside, self.objects = family, beside, objects
+        self.others = [one.now(Sought(given), given) for one in beside]
+
+    def starts(self) -> list[Floats]:
+        """From objects that are alike."""
+        every = (np.append(one, self.others) for one in self.objects)
+        return [np.clip(one, self.lowest, self.highest) for one in every]
 
     def of_object(self, numbers: Floats) -> Floats:
         return numbers[: len(self.family.kinds)]
@@ -166,6 +171,7 @@ def families_fitted(
 ) -> Callable[[str], FittedObject]:
     """The fit of each family by its name, beside some unknowns of the vibrissa and its foot."""
     x, y, angles = _contacts(passes)
+    circles = _circles_through(x, y)
     others = [UNKNOWNS[name] for name in beside]
     known = families(angles)
     tried: dict[str, tuple[ObjectFit, Floats, float, Estimated]] = {}
@@ -173,13 +179,12 @@ def families_fitted(
     def fitted(name: str) -> tuple[ObjectFit, Floats, float, Estimated]:
         if name not in tried:
             one = known[name]
-            simpler = [_circle_through(x, y)]
+            simpler = circles
             if one.simpler:
                 simpler = [fit.of_object(at) for fit, at, *_ in map(fitted, one.simpler)]
             measured, case = _measured(passes, noise, len(one.kinds) + len(others))
-            fits = [ObjectFit(measured, case, one, one.start(at), others) for at in simpler]
-            nearest = min(fits, key=lambda fit: float(np.sum(fit.misses(fit.start) ** 2)))
-            tried[name] = fitted_to_noise(nearest, noise is not None)
+            fit = ObjectFit(measured, case, one, [one.start(at) for at in simpler], others)
+            tried[name] = fitted_to_noise(fit, noise is not None)
         return tried[name]
 
     return lambda name: _object(*fitted(name), angles)
@@ -202,10 +207,11 @@ def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
     return x / long, y / long, angle
 
 
-def _circle_through(x: Floats, y: Floats) -> Floats:
-    """Radius and centre of the circle nearest to points, by linear least squares (Kasa 1976).
+def _circles_through(x: Floats, y: Floats) -> list[Floats]:
+    """Radius and centre of circles near points, by linear least squares (Kasa 1976).
 
-    Two rounds, the second one without points that are far off.
+    Two rounds, the second one without points that are far off. Noise makes such a circle too small:
+    wider ones with the same lowest point are as likely.
     """
     kept = np.full(len(x), True)
     for _ in range(2):
@@ -214,7 +220,7 @@ def _circle_through(x: Floats, y: Floats) -> Floats:
         radius = np.sqrt(max(c + a**2 + b**2, 0.0))
         off = np.abs(np.hypot(x - a, y - b) - radius)
         kept = off <= 4 * np.median(off)
-    return np.array([radius, a, b])
+    return [np.array([wide * radius, a, b + (wide - 1) * radius]) for wide in _WIDER]
 
 
 def _measured(

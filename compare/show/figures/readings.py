@@ -107,17 +107,12 @@ def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
     if len(table) < 2:  # no sweep
         return at, np.full(len(table), np.nan)
     stations = comparison.candidate.table.iloc[table["station"]].reset_index(drop=True)
-    found, expected = (
-        reconstruct(
-            replace(
-                comparison.reference,
-                table=stations.assign(**{r: table[f"{r}_{side}"] for r in CLAMP_READINGS}),
-            )
-        )
-        for side in ("candidate", "reference")
-    )
-    s, expected_s = (one[name].to_numpy() / beam.length for one in (found, expected))
-    return at, on_vibrissa(s) - on_vibrissa(expected_s)
+    found = []
+    for side in ("candidate", "reference"):
+        felt = stations.assign(**{r: table[f"{r}_{side}"] for r in CLAMP_READINGS})
+        contacts = reconstruct(replace(comparison.reference, table=felt))
+        found.append(on_vibrissa(contacts[name].to_numpy() / beam.length))
+    return at, found[0] - found[1]
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
@@ -180,15 +175,12 @@ def passes_picture(passes: Sequence[Pass]) -> Figure:
     figure, axes = stacked(passes[0].readings)
     for name, ax in axes.items():
         for i, one in enumerate(passes):
-            marks = {
-                "marker": "." if one.direction == "left" else "x",
-                "color": style.SERIES[i % len(style.SERIES)],
-                "linestyle": "",
-                "markersize": 3.5,
-            }
+            look = {"color": style.SERIES[i % len(style.SERIES)], "linestyle": ""}
+            marker = "." if one.direction == "left" else "x"
             values = one.readings.values(name) / unit(one.readings, name)
             said = style.label(f"{one.name}, to the {one.direction}") if i < _MOST else "_"
-            draw(ax, foot(one.readings), values, label=said, **marks)
+            of_foot = foot(one.readings)
+            draw(ax, of_foot, values, label=said, marker=marker, markersize=3.5, **look)
         ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=style.SMALL)
     key_below(figure, axes["force_x"], 3)
     return figure

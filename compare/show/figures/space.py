@@ -136,14 +136,8 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
         ax.add_collection3d(Poly3DCollection(upright(faces), **shown))
     ax.plot(*upright(scene.foot).T, color=style.GREY, linestyle="--", linewidth=1)
     low, high = scene.low, scene.high
-    ax.set(
-        xlim=(low[0], high[0]),
-        ylim=(high[2], low[2]),
-        zlim=(low[1], high[1]),
-        xlabel="$x$ / $L$",
-        ylabel="$z$ / $L$",
-        zlabel="$y$ / $L$",
-    )
+    ax.set(xlim=(low[0], high[0]), ylim=(high[2], low[2]), zlim=(low[1], high[1]))
+    ax.set(xlabel="$x$ / $L$", ylabel="$z$ / $L$", zlabel="$y$ / $L$")
     extent = high - low
     for axis, size in zip("xzy", extent / extent.max(), strict=True):
         ax.locator_params(axis=axis, nbins=max(2, round(5 * size)))

@@ -15,8 +15,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from analytic import InputError
-from compare.study.grid.axes import MOST_RUNS, Axis, Value
-from compare.study.grid.study import MESHES, Study
+from compare.study.grid.study import MESHES, MOST_RUNS, Axis, Study, Value
 from engines.found import list_engines
 
 

@@ -1,4 +1,4 @@
-"""What a study is: the tables of its file, and what they are once checked."""
+"""What a study is: the tables of its file, what varies in it, and what they are once checked."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,15 +8,71 @@ import numpy as np
 from pydantic import AfterValidator, ConfigDict, Field
 
 from analytic import CLAMP_READINGS
+from analytic.problem.arrays import Floats
 from compare.read.quantities import FileName, Table, validated
 from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import KeyPlace
-from compare.study.grid.axes import Axis, Sample
 
 if TYPE_CHECKING:
     from analytic import Readings
     from analytic.space import SpatialReadings
+
+
+Value: TypeAlias = bool | int | float | str
+MOST_RUNS = 1_000_000
+"""Largest number of runs of a study: an index of so many (about 300 MB) still fits in memory."""
+
+
+class Range(Table):
+    # First and last value (``from``, ``to``); a text has a unit.
+    low: int | float | str = Field(alias="from")
+    high: int | float | str = Field(alias="to")
+    # Number of values; without it the range is sampled.
+    count: Annotated[int, Field(ge=2, le=MOST_RUNS)] | None = None
+    spacing: Literal["linear", "log"] = "linear"  # equal differences, or equal ratios
+
+
+class Sample(Table):
+    """How the ranges without a count are sampled, all together."""
+
+    count: int = Field(ge=1, le=MOST_RUNS)  # number of points
+    method: Literal["latin-hypercube", "random"] = "latin-hypercube"  # how they are drawn
+    seed: int = Field(default=0, ge=0)  # the same seed draws the same points
+
+    def draw(self, dimensions: int) -> Floats:
+        if self.method == "latin-hypercube":
+            from scipy.stats import qmc  # slow to load, and few studies draw samples
+
+            return np.asarray(qmc.LatinHypercube(dimensions, rng=self.seed).random(self.count))
+        return np.random.default_rng(self.seed).random((self.count, dimensions))
+
+
+def between(low: float, high: float, log: bool, whole: bool, fraction: Floats) -> list[Value]:
+    """Values of a range: at equal ratios if `log`, else at equal differences."""
+    values = low * (high / low) ** fraction if log else low + (high - low) * fraction
+    if whole:
+        return [int(value) for value in np.rint(values)]
+    # Twelve digits: what was written comes back as written, on every machine.
+    return [float(f"{value:.12g}") for value in values]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Parameters that advance together, and every point that they take."""
+
+    # Dotted keys of the case file; one, or several that are zipped or sampled together.
+    keys: tuple[str, ...]
+    points: tuple[tuple[Value, ...], ...]  # one value for each key; each point once
+
+    def __post_init__(self) -> None:
+        if not self.points or {len(point) for point in self.points} != {len(self.keys)}:
+            raise ValueError("an axis needs a point, and each point a value for each key")
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Sequence[Value]]) -> "Axis":
+        """Make the axis that takes the values of several columns row by row."""
+        return cls(tuple(columns), tuple(dict.fromkeys(zip(*columns.values(), strict=True))))
 
 
 class SensorNoise(Table):
@@ -31,15 +87,11 @@ class SensorNoise(Table):
         if self.relative == 0:
             return readings
         from analytic.space import SpatialReadings  # pandas is slow to load, a check needs none
+        from analytic.space.problem.readings import FORCE, MOMENT
         from compare.sense.noise import with_noise
 
-        if isinstance(readings, SpatialReadings):
-            return self._add_in_space(readings)
-        return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)
-
-    def _add_in_space(self, readings: "SpatialReadings") -> "SpatialReadings":
-        from analytic.space.problem.readings import FORCE, MOMENT
-
+        if not isinstance(readings, SpatialReadings):
+            return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)
         table, random = readings.table.copy(), np.random.default_rng(self.seed)
         for names in (FORCE, MOMENT):
             values = readings.values(*names)
@@ -136,12 +188,6 @@ class Study:
             if ENGINE in axis.keys:
                 found = {str(point[axis.keys.index(ENGINE)]) for point in axis.points}
         return tuple(sorted(found))
-
-
-def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    return {
-        f"{name}.{key}": value for name, table in tables.items() for key, value in table.items()
-    }
 
 
 class PlanarRun(CaseFile):

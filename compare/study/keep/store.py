@@ -80,12 +80,9 @@ def _in_one_line(folder: Path) -> Iterator[None]:
     except (OSError, sqlite3.DatabaseError) as error:
         number = error.errno if isinstance(error, OSError) else None
         reason = os.strerror(number) if number else str(error)
-        raise InputError(
-            "--out",
-            f"{folder} ({reason})",
-            "a folder that can be written to, with space left",
-            "correct that and start again: complete runs are kept",
-        ) from error
+        allowed = "a folder that can be written to, with space left"
+        remedy = "correct that and start again: complete runs are kept"
+        raise InputError("--out", f"{folder} ({reason})", allowed, remedy) from error
 
 
 _AT_ONCE = 5000  # rows in memory

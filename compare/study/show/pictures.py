@@ -25,7 +25,7 @@ from compare.study.show.results import (
     together,
     words,
 )
-from compare.study.show.tables import pareto_front
+from compare.study.show.sentences import pareto_front
 
 Drawings: TypeAlias = dict[str, Callable[[], Figure]]
 """Figures to draw, by what they show."""
@@ -81,12 +81,8 @@ def error_against_time(found: StudyResults, done: pd.DataFrame) -> Figure:
     front = pareto_front(done, "seconds_candidate", WORST)
     ax.plot(front["seconds_candidate"], front[WORST], color=INK, linewidth=1.2,
             drawstyle="steps-post", label="best error for the time")  # fmt: skip
-    ax.set(
-        xscale="log",
-        yscale="log",
-        xlabel="time of the simulated sweep [s]",
-        ylabel="worst reading's rms\n/ largest magnitude",
-    )
+    ax.set(xscale="log", yscale="log", xlabel="time of the simulated sweep [s]")
+    ax.set_ylabel("worst reading's rms\n/ largest magnitude")
     ax.legend(fontsize=SMALL, frameon=False)
     return figure
 

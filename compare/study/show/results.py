@@ -197,17 +197,15 @@ def _matters(found: StudyResults, group: pd.DataFrame, axis: str, metric: str) -
 
 
 def _hold(group: pd.DataFrame, axes: Sequence[str]) -> tuple[dict[str, float], pd.DataFrame]:
-    held = {axis: _held(axis, group[axis]) for axis in axes}
+    held = {}
+    for axis in axes:
+        distinct = np.unique(group[axis])
+        held[axis] = float(distinct[-1 if axis in REFINED else len(distinct) // 2])
     return held, _at(group, held)
 
 
 def _varies(values: pd.Series) -> bool:
     return bool(values.min() < values.max())
-
-
-def _held(axis: str, values: pd.Series) -> float:
-    distinct = np.unique(values)
-    return float(distinct[-1] if axis in REFINED else distinct[len(distinct) // 2])
 
 
 def _some(values: Floats, most: int) -> Floats:

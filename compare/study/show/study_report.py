@@ -21,11 +21,12 @@ from compare.show.document import (
 from compare.show.page import html, png, write_all
 from compare.study.keep.database import Warn
 from compare.study.keep.store import read_plan, read_rows
-from compare.study.show import pictures, tables
+from compare.study.show import pictures
 from compare.study.show.results import Question, StudyResults, asked, curves, repeated
-from compare.study.show.sentences import headline, varied
+from compare.study.show.sentences import headline, orders, outcomes, vanishing, varied
 
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
+_ELSEWHERE = "All lines are in report/curves.csv, all runs in the study's folder."
 _TABLES = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
 
 
@@ -41,9 +42,9 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
     for line in damage:
         warn(line)
     numbers = {
-        "outcomes": tables.outcomes(found),
-        "orders": tables.orders(found),
-        "phase-b-vanishes": tables.vanishing(found),
+        "outcomes": outcomes(found),
+        "orders": orders(found),
+        "phase-b-vanishes": vanishing(found),
         "curves": curves(found, [question.metric for question in asked(found)]),
     }
     document = _document(found, numbers)
@@ -67,11 +68,15 @@ def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document
     against = ", closed form alone"
     if study.beams:
         against = f", MuJoCo's {' and '.join(study.beams)} against the closed form"
-    outcomes = list(numbers["outcomes"].itertuples(index=False, name=None))
+    counted = list(numbers["outcomes"].itertuples(index=False, name=None))
     first = (
         answers[questions[0].name] if questions else "What was recorded does not vary over them."
     )
-    lost = [(what, str(n), str(why)) for what, n, why in outcomes if what != "done"]
+    lost = [(what, str(n), str(why)) for what, n, why in counted if what != "done"]
+    head = ("outcome", "runs", "example")
+    why = [Table("One example each", head, lost, words=(0, 2))] if lost else []
+    made = [*found.plan.versions.items()]
+    versions = Table("Of the programs that made the runs", (), made, words=(0, 1))
     return Document(
         f"Study {study.name}: {study.case}{against}",
         f"Varied: {varied(found)}.",
@@ -81,19 +86,14 @@ def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document
             first,
         ),
         sections(
-            ("not-done", "Why runs are not done", _lost(lost)),
+            ("not-done", "Why runs are not done", why),
             *((one.name, one.text, _answer(found, one, answers[one.name])) for one in questions),
             ("time", "What does accuracy cost?", _cost(found)),
             *((name, title, _table(name, numbers[name])) for name, title in _TABLES.items()),
-            ("versions", "Versions", _versions(found)),
+            ("versions", "Versions", [versions, Text(_ELSEWHERE, aside=True)]),
         ),
-        [Tile(what, str(n), "run" if n == 1 else "runs") for what, n, _ in outcomes],
+        [Tile(what, str(n), "run" if n == 1 else "runs") for what, n, _ in counted],
     )
-
-
-def _lost(rows: list[tuple[str, str, str]]) -> Iterator[Block]:
-    if rows:
-        yield Table("One example each", ("outcome", "runs", "example"), rows, words=(0, 2))
 
 
 def _answer(found: StudyResults, question: Question, answer: str) -> Iterator[Block]:
@@ -111,12 +111,6 @@ def _cost(found: StudyResults) -> Iterator[Picture]:
         figure = {"error against time": partial(pictures.error_against_time, found, runs)}
         said = "Each dot is a run. No run beats the line in both time and error."
         yield Picture("p-time", figure, said, "middle")
-
-
-def _versions(found: StudyResults) -> Iterator[Block]:
-    versions = [*found.plan.versions.items()]
-    yield Table("Of the programs that made the runs", (), versions, words=(0, 1))
-    yield Text("All lines are in report/curves.csv, all runs in the study's folder.", aside=True)
 
 
 def _caption(found: StudyResults, question: Question) -> str:

@@ -4,8 +4,8 @@ import os
 import platform
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import version
@@ -30,9 +30,8 @@ from analytic.space import SpatialReadings, solve_space
 from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
 from compare.simulate.dispatch import simulate
-from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
-from compare.study.grid.study import PlanarRun, SpatialRun, Study, run_of
+from compare.study.grid.study import PlanarRun, SpatialRun, Study, Value, run_of
 from compare.study.work import metrics
 from mujoco_models import DivergedError
 
@@ -59,7 +58,7 @@ def known_of(study: Study, parameters: Sequence[dict[str, Value]]) -> list[Known
     if study.in_space or study.beams or len(parameters) == 1:
         return [NOTHING] * len(parameters)
     given = {i: {**study.base, **one} for i, one in enumerate(parameters)}
-    runs = _where_possible(_read, given)
+    runs = _where_possible(lambda one: require("run", run_of(one), PlanarRun, ""), given)
     events: dict[int, Events] = {}
     swept: dict[int, Readings] = {}
     if "events" in study.record and (plain := _where_possible(_plain, runs)):
@@ -81,11 +80,6 @@ def _where_possible(function: Callable[[Any], T | None], given: Mapping[int, Any
             if (found := function(one)) is not None:
                 made[i] = found
     return made
-
-
-def _read(parameters: Mapping[str, Value]) -> PlanarRun | None:
-    run = run_of(parameters)
-    return run if isinstance(run, PlanarRun) else None
 
 
 def _plain(run: PlanarRun) -> tuple[Contour, Beam] | None:
@@ -129,10 +123,16 @@ def perform_all(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
 def perform_alone(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
     """Do runs in a process that does nothing else: one that hangs ends the process.
 
-    `perform` asks the time between stations, which ends a slow run but not a stuck one.
+    `perform` asks the time between stations, which ends a slow run but not a stuck one. An alarm
+    that nobody handles kills; no Python code has to run for it. Windows has no such alarm.
     """
-    with _end_of_process(1.1 * study.timeout + 1):
+    if not hasattr(signal, "setitimer"):
         return perform_all(study, runs)
+    signal.setitimer(signal.ITIMER_REAL, 1.1 * study.timeout + 1)
+    try:
+        return perform_all(study, runs)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float = 0.0) -> Result:
@@ -149,7 +149,8 @@ def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float 
     except DivergedError as error:
         row |= {"outcome": "diverged", "reason": str(error)}
     except Exception as error:
-        row |= {"outcome": "failed", "reason": _one_line(error)}
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        row |= {"outcome": "failed", "reason": reason}
     row |= {"seconds": time.perf_counter() - begin, **_system()}
     return Result(row, readings if study.keep_readings else {})
 
@@ -185,7 +186,13 @@ def _measure(
     simulated = reference
     if study.beams:
         begin = time.perf_counter()
-        simulated = _simulated(run, _deadline(begin + study.timeout))
+
+        def ask_the_time() -> None:
+            """Between stations."""
+            if time.perf_counter() > begin + study.timeout:
+                raise _TimeIsUp
+
+        simulated = _simulated(run, ask_the_time)
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
     candidate = run.noise.add_to(simulated)
@@ -231,32 +238,6 @@ def _trust(simulated: Readings | SpatialReadings) -> Row:
     return {}
 
 
-def _deadline(end: float) -> Callable[[], None]:
-    """To be called between stations: raises when the time is up."""
-
-    def check() -> None:
-        if time.perf_counter() > end:
-            raise _TimeIsUp
-
-    return check
-
-
-@contextmanager
-def _end_of_process(seconds: float) -> Iterator[None]:
-    """After so many seconds the operating system ends the process, whatever it is doing.
-
-    An alarm that nobody handles kills; no Python code has to run for it. Windows has no such alarm.
-    """
-    if not hasattr(signal, "setitimer"):
-        yield
-        return
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-
-
 @cache
 def _system() -> Row:
     return {
@@ -265,7 +246,3 @@ def _system() -> Row:
         "system": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         "host": platform.node(),
     }
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -88,6 +88,32 @@ def test_a_converter_that_does_not_move_knows_its_zero_to_a_step(tmp_path):
     assert np.all(stated >= 0.99 * step[:, 0] / np.sqrt(12))
 
 
+@pytest.mark.parametrize("share", [0.005, 0.02, 0.05])
+def test_a_coarse_converter_is_no_channel_that_is_stuck(tmp_path, share):
+    """A force that hardly changes while another does was called saturated, of 2 % steps."""
+    step = share * np.abs(exact()[1:]).max(axis=1, keepdims=True)
+
+    def rounded(values):
+        rng = np.random.default_rng(3)
+        quiet = exact()[1:] + 0.1 * step * rng.standard_normal((3, 1)) + 0.3 * step
+        return np.vstack([values[:1], np.round(quiet / step) * step])
+
+    (one,) = usable(look_at_passes(*rig(tmp_path, rounded)))
+    stated = np.array([*one.readings.provenance["free_noise"].values()])
+    assert np.all(stated >= 0.99 * step[:, 0] / np.sqrt(12))
+
+
+def test_passes_of_other_units_are_named(tmp_path):
+    """Of a thousandth of the size: "4 passes say the same", for no place of the foot differed."""
+    rig(tmp_path)
+    milli = (tmp_path / "pass.csv").rename(tmp_path / "milli.csv")
+    rows = np.loadtxt(milli, delimiter=",", skiprows=1) * [1, 1e-3, 1e-3, 1e-3]
+    np.savetxt(milli, rows, "%.9f", ",", header="x,fx,fy,mz", comments="")
+    files, described = rig(tmp_path, seed=1)
+    with pytest.raises(InputError, match=r"of milli at most 1\.0e-03 times as large as of pass"):
+        usable(look_at_passes([*files, milli], described))
+
+
 def saturated(values):
     return np.vstack([values[:2], np.minimum(values[2:3], 0.8 * values[2].max()), values[3:]])
 

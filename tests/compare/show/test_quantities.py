@@ -6,9 +6,10 @@ import pytest
 
 from analytic import SENSED, Beam, Case, Readings, circle, solve_sweep
 from compare import compare
-from compare.commands.pipeline import print_comparison
+from compare.commands import terminal
 from compare.show.figures.over_foot import foot_label, reading_label
 from compare.show.numbers import quantity
+from compare.show.report import summary_of
 from tests.compare.show.pages import written_page
 from tests.conftest import exact_sweep
 
@@ -53,7 +54,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     assert "50 mm" in foot_label(exact)
     units = {"force_x": "N", "force_y": "N", "moment_z": "N m"}
     assert [ax.get_ylabel() for ax in exact.plot()] == [f"{n} [{u}]" for n, u in units.items()]
-    print_comparison(found)
+    terminal.show(*summary_of(found))
     assert "2 mm" in capsys.readouterr().out
     exact.write(tmp_path / "a.parquet")
     assert Readings.read(tmp_path / "a.parquet").beam.si

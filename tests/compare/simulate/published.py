@@ -180,6 +180,16 @@ CABLES: dict[str, Callable[[], Published]] = {
     "MuJoCo's cable": lambda: cable(
         1.0, 0.005, 4e6, 1e7, 41, 'damping="0.015"', 'condim="1"', gravity="0 0 -9.81",
     ),
+    # the same, test/plugin/elasticity/elasticity_test.cc: it is bent into a circle
+    "MuJoCo's cantilever": lambda: cable(
+        1.0, 0.005, 1e9, 1e6, 41, 'damping="2"', 'density="1"',
+    ),
+    # github.com/airvlab/cathsim, a guidewire as a cable: its joints add springs of their own
+    "CathSim's guidewire": lambda: cable(
+        0.3, 0.0008, 1e9, 1e6, 31, 'damping="0.5" stiffness="0.01"',
+        'condim="1" density="6450" margin="0.02"', gravity="0 0 -9.81",
+        option='timestep="0.004" density="1055" viscosity="0.004" integrator="implicitfast"',
+    ),
     # github.com/google-deepmind/mujoco_playground/issues/269
     "Playground's cable": lambda: cable(
         1.0, 0.002, 1e7, 6e4, 10, 'damping="0.01" armature="0.001"',

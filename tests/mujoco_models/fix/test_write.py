@@ -167,7 +167,7 @@ def test_an_attached_model_gets_a_copy_that_the_model_attaches(tmp_path):
     assert len(changed(ROBOT, main.read_text())) == 2 == ROBOT.count("attach ")
     assert len(changed(own, links.read_text())) == 4  # of default and sensor, and of the joint
     model = mujoco.MjModel.from_xml_path(str(path))
-    with pytest.raises(InputError, match="put <site/> into it"):
+    with pytest.raises(InputError, match="put <site/> into a body there"):
         fixed(path, model, [Insert("<site/>", 1)], path.with_name("fixed.xml"))
 
 

@@ -59,6 +59,7 @@ def test_default_contacts_are_found_wanting_and_inspect_said_so():
 
 
 OURS = {"contact": "ours"}
+RAIL = '<joint name="rail" type="slide" axis="1 0 0" armature="10"/>'
 
 
 @pytest.fixture(scope="module")
@@ -100,6 +101,24 @@ def test_a_heavy_foot_is_not_felt(tmp_path, plain):
     scale = np.abs(plain.values("force_x")).max()
     off = (heavy.values("force_x") - plain.values("force_x"))[5:15] / scale
     assert np.sqrt(np.mean(off**2)) < 0.02
+
+
+@pytest.mark.parametrize(
+    "chain",
+    [
+        Chain(beside='<geom type="sphere" size="0.05" pos="-0.3 0.2 0"/>'),
+        Chain(foot="", inside_foot=f'{RAIL}<geom fromto="-0.1 0 0 -0.1 0.6 0" mass="1"/>'),
+    ],
+    ids=["post", "bar"],
+)
+def test_a_station_that_touches_another_thing_says_so(tmp_path, plain, chain):
+    """A post on the way, which the vibrissa meets; a bar on the foot, which meets the object."""
+    found = swept(tmp_path, chain, **OURS).table
+    assert "touches another" not in set(plain.table["status"])
+    other = (found["status"] == "touches another").to_numpy()
+    first = int(np.argmax(other))
+    assert first > 1  # a foot on a slide bounces at the first contact
+    assert other[first : first + 10].all()
 
 
 def test_sensors_are_added_at_a_site(tmp_path, plain):

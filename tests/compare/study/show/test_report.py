@@ -11,9 +11,8 @@ from analytic import CLAMP_READINGS, InputError
 from compare.study.grid.plan import PLAN
 from compare.study.keep.database import NAME, Database
 from compare.study.show.results import WORST, StudyResults, asked, lines
-from compare.study.show.sentences import headline, varied
+from compare.study.show.sentences import headline, orders, outcomes, pareto_front, vanishing, varied
 from compare.study.show.study_report import write_report
-from compare.study.show.tables import orders, outcomes, pareto_front, vanishing
 
 TWO_BEAMS = """
 [study]
