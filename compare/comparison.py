@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 _EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
 _KEPT = ("rms", "max", "at", "phase", "rms_by_phase", "scale")  # of a disagreement in space
 _AS_TABLE = "wrap a table as Readings(table, beam), in space SpatialReadings(table, beam)"
+_COARSE = 0.05  # of the stations; the last three before a snap-off are so in any reference
 _OF_95 = 1.96  # standard deviations: half the width of an interval that holds 95 % of a normal
 
 
@@ -74,14 +75,16 @@ class Comparison(Judged[Readings], Measurement):
         """What is to be known of both sweeps, and how well jumps of the contact are."""
         counts, (size, unit) = self.alignment.counts, self.reference.running_unit
         step = float(np.abs(np.diff(self.reference.running_values)).max()) / size
-        said = {
-            "beside_jump": "note: stations beside a jump of the contact, whose place is known to "
-            f"{step:.2g} {unit}, are not compared: {counts['beside_jump']}",
-            "reference_coarse": "note: stations between those of the reference, which are too far "
-            f"apart to say what is there, are not compared: {counts['reference_coarse']}; "
-            f"sweep the reference in smaller steps than {step:.2g} {unit}",
-        }
-        return (*super().remarks, *(text for name, text in said.items() if counts[name]))
+        jumped, coarse = counts["beside_jump"], counts["reference_coarse"]
+        said = []
+        if jumped:
+            said.append("note: stations beside a jump of the contact, whose place is known to "
+                        f"{step:.2g} {unit}, are not compared: {jumped}")  # fmt: skip
+        if coarse > _COARSE * (coarse + counts["compared"]):
+            said.append("note: stations between those of the reference, which are too far apart "
+                        f"to say what is there, are not compared: {coarse}; sweep the reference in "
+                        f"smaller steps than {step:.2g} {unit}")  # fmt: skip
+        return (*super().remarks, *said)
 
     def validated(
         self,

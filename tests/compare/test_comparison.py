@@ -108,3 +108,15 @@ def test_comparison_as_json(exact, simulated):
     assert {"agreement", "transitions"} <= set(found["phases"])
     assert set(found["snap_off"]) >= {"reference", "candidate", "difference"}
     assert found["verdict"] == "agrees"
+
+
+def test_a_reference_that_is_too_coarse_is_noted():
+    """Past an octagon, where readings bend; one of 200 stations says nothing of its snap-off."""
+    turn = 0.2 + 2 * np.pi * np.arange(8) / 8
+    octagon = polygon(np.column_stack([0.4 * np.cos(turn), 0.8 + 0.4 * np.sin(turn)]))
+    for profile, stations, noted in ((octagon, 61, True), (circle(1.0, (0.0, 0.5)), 200, False)):
+        case = Case(profile=profile, sweep=Sweep(stations))
+        finer = solve_sweep(replace(case, sweep=Sweep(333)))
+        found = compare(solve_sweep(case), finer)
+        assert found.agrees and found.alignment.counts["reference_coarse"]
+        assert any("smaller steps" in one for one in found.remarks) == noted
