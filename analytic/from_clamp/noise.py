@@ -13,7 +13,7 @@ from analytic.problem.readings import Readings
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
 _SURELY = 1e-6  # of it: no zero is known better
-_COARSE = 0.5  # of all stations are as the one before: the converter's steps hide the noise
+_COARSE = 0.5  # of the stations, not all, are as the one before: a converter hides the noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
 DOUBLE_SIDED_95 = 1.959964  # standard deviations, of a normal distribution
@@ -43,7 +43,7 @@ def scatter(values: Floats) -> float:
     differences = np.convolve(values, _DIFFERENCE, mode="valid")
     # The norm, sqrt(70), is the difference's gain on white noise.
     noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
-    if np.mean(np.diff(values) == 0) > _COARSE:
+    if _COARSE < np.mean(np.diff(values) == 0) < 1:
         noise = max(noise, rounding(values))
     return float(max(noise, _ROUND_OFF * np.abs(values).max()))
 
