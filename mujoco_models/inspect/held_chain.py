@@ -235,7 +235,8 @@ class HeldChain(HeldModel):
         if not scale[least] > _SOFTEST * scale[most]:
             raise InputError(
                 self._body_of(least), "without a stiffness", "held by a spring",
-                "give its joint a stiffness, or the bodies an elasticity plugin with bend and twist",
+                "give its joint a stiffness, or the bodies an elasticity plugin with bend and "
+                "twist",
             )  # fmt: skip
         return slope
 
