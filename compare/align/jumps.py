@@ -6,7 +6,8 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 
-_LARGE = 1e-2  # of a reading's largest magnitude: half of what a single station may be off
+LARGE = 1e-2
+"""Of a reading's largest magnitude: half of what a single station may be off."""
 _TYPICAL = 8.0  # times the median: of noise alone, one cell in a million is so much more
 _SUDDEN = 4.0  # times what rises change by from one to the next: before a snap-off 1.5 to 3
 _ASIDE = 3e-3  # L or rad, by which a jump may be early or late, as a snap-off may
@@ -33,11 +34,11 @@ def jumps(x: Floats, relative: Floats, starts: Integers) -> Integers:
     whole[starts[1:] - 1] = False
     slope = np.diff(relative) / np.where(step == 0, 1.0, step)
     found: Integers = np.zeros(0, dtype=int)
-    limit = _LARGE
+    limit = LARGE
     while True:
         miss, changes = _beside_others(np.where(whole, slope, np.nan), step)
         if not found.size and miss.any():
-            limit = max(_LARGE, _TYPICAL * float(np.median(miss[miss > 0])))
+            limit = max(LARGE, _TYPICAL * float(np.median(miss[miss > 0])))
         miss[miss <= np.maximum(limit, _SUDDEN * changes)] = 0.0
         beside = np.maximum(np.append(0.0, miss[:-1]), np.append(miss[1:], 0.0))
         new = np.flatnonzero((miss > 0) & (miss >= beside))
@@ -65,6 +66,16 @@ def sides(after: int, starts: Integers, count: int) -> Iterator[tuple[int, slice
     last = int(np.searchsorted(ends, after, side="right"))
     yield last - 1, slice(after + 1, min(ends[last + 1], after + 5))
     yield last, slice(max(ends[last - 1], after - 3), after + 1)
+
+
+def neighbours(station: int, starts: Integers, count: int) -> Iterator[slice]:
+    """Up to three stations of its stretch on either side, which lead to where one would be."""
+    ends = np.append(starts, count)
+    one = int(np.searchsorted(ends, station, side="right"))
+    for near in (slice(max(ends[one - 1], station - 3), station),
+                 slice(station + 1, min(ends[one], station + 4))):  # fmt: skip
+        if near.stop - near.start > 1:
+            yield near
 
 
 def beside(x: Floats, places: Floats, size: float) -> Booleans:

@@ -11,11 +11,12 @@ from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FOOT
-from compare.align.jumps import beside, jumps, sides
+from compare.align.jumps import LARGE, beside, jumps, neighbours, sides
 from compare.sense.noise import scales
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
+_CLEARLY = 0.25  # of what it is off, by which a station is as its neighbours on one side are
 _SAME_PLACE = 1e-3  # of the way from station to station, where they are as near as that
 _SAME_POSE = 1e-6  # L, rad, and of a tangent's components
 _CUBIC = 4  # stations that a cubic spline needs
@@ -60,7 +61,8 @@ def align(
 
     A reference station at the same place is taken as it is. Otherwise the reference is
     interpolated by a cubic spline through one uninterrupted stretch of one phase. Stations
-    beside a jump from corner to corner are left out, if they are as on its other side.
+    beside a jump from corner to corner are left out, if they are as on its other side: where one
+    sweep still holds on to a corner, and the other is where its neighbours on one side lead.
     """
     length = reference.beam.length
     size, _ = reference.running_unit
@@ -85,9 +87,9 @@ def align(
         for sweep in (reference, candidate)
     )
     phase = reference_phase.phase
-    starts = np.flatnonzero(np.append(True, phase[1:] != phase[:-1]))
-    after = jumps(x_ref, values / scale, starts)
-    starts = np.union1d(starts, after + 1)
+    phases = np.flatnonzero(np.append(True, phase[1:] != phase[:-1]))
+    after = jumps(x_ref, values / scale, phases)
+    starts = np.union1d(phases, after + 1)
     stretch = np.searchsorted(starts, nearest, side="right") - 1
     covering = np.where(same, stretch, _covering(x_ref, starts, x))
     state = np.where(same, phase[nearest], np.where(covering < 0, "", phase[starts[covering]]))
@@ -124,6 +126,11 @@ def align(
             other = interpolant(x_ref[beyond], values[:, beyond])(x[here])
             jumped = (np.abs(own[:, here] - other) / scale).max(axis=0) < off[here]
             reasons[here[jumped]] = "beside_jump"
+    for i in np.flatnonzero((reasons == "compared") & same & (off > LARGE)).tolist():
+        for around in neighbours(int(nearest[i]), phases, len(x_ref)):
+            other = interpolant(x_ref[around], values[:, around])(x[i : i + 1])
+            if (np.abs(own[:, i : i + 1] - other) / scale).max() < _CLEARLY * off[i]:
+                reasons[i] = "beside_jump"
     compared = reasons == "compared"
     columns = {
         "station": np.flatnonzero(compared),

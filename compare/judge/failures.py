@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from analytic import Readings
 from analytic.space import SpatialReadings
 from compare.judge.allowance import Allowance, NoiseAllowance, SpatialAllowance
@@ -55,8 +57,10 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
     seen = {name: pair for name, pair in events.items() if name not in unasked}
     yield from _events(found, seen, found.beyond(), found.not_trusted())
     counts, stations = found.alignment.counts, len(found.candidate.table)
-    untrusted = counts["untrusted"] + counts["dropped"]
-    yield from _stations(untrusted, stations, asked["untrusted"], "; ".join(_reasons(found)))
+    absent = _absent(found)
+    untrusted = counts["untrusted"] + counts["dropped"] + absent
+    why = "; ".join(_reasons(found, absent))
+    yield from _stations(untrusted, stations + absent, asked["untrusted"], why)
 
 
 def failures_in_space(
@@ -230,8 +234,23 @@ def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
     return Limit(limit + late, f"{limit:.1e} early or late ({limit.reason}); late, {late.reason}")
 
 
-def _reasons(found: Measurement) -> Iterator[str]:
+def _absent(found: Measurement) -> int:
+    """How many rows the candidate would have where the reference touches, and has not."""
+    at = np.sort(found.reference.running_values[found.judged["reference"].phase != "free"])
+    own = found.candidate.running_values
+    holes = found.records["candidate"].holes.items()
+    within = (np.diff(np.searchsorted(at, np.sort(own[i : i + 2])))[0] for i, _ in holes)
+    return sum(count for (_, count), some in zip(holes, within, strict=True) if some)
+
+
+def _reasons(found: Measurement, absent: int) -> Iterator[str]:
     """Why stations of the candidate are not to be trusted, and where."""
+    if absent:
+        after = max((rows := found.records["candidate"].holes), key=rows.__getitem__)
+        size, unit = found.candidate.running_unit
+        one, other = found.candidate.running_values[after : after + 2] / size
+        yield (f"some {absent} of them are not there: {found.candidate.running} leaps from "
+               f"{one:.4g} to {other:.4g} {unit}")  # fmt: skip
     if missing := int(found.records["candidate"].missing.sum()):
         yield f"{missing} of them lack a number"
     if dropped := found.alignment.counts["dropped"]:

@@ -30,7 +30,7 @@ _REMEDY = "run it again, or remove its folder"
 @dataclass(frozen=True)
 class StoredRun:
     reference: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
-    candidate: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
+    candidate: Readings | SpatialReadings
     # Those that the run was judged by; the defaults if it was not.
     tolerances: Tolerances | SpatialTolerances
     frame: Frame  # that the components were compared in

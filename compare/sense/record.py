@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
@@ -16,6 +17,7 @@ _FEWEST = 3  # equal extremes that are no accident
 _PILED = 3  # times more stations at the extreme than at any other one value: not quantisation
 _LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
 _WIDE = 5  # times the median step: a gap
+_BESIDE = 4  # steps to either side that say how long one is
 _JITTER = 10  # median steps that the foot may retreat by the jitter of its reading, ...
 _BACK = (0.01, 0.1)  # ... and at least and at most this fraction of its travel
 
@@ -35,6 +37,10 @@ class Record:
     where_clipped: tuple[str, ...]  # the readings that are cut off
     gaps: int  # steps of the foot that are more than five times as long as the median one
     widest: float  # the longest step [length]
+    # After which rows others are not there, as one step is more than five times as long as four on
+    # either side, and how many.
+    holes: dict[int, int]
+    column: str  # over which the sweep runs
     # Steps of the foot against its direction of travel, if they lead so far back that the rows are
     # not in the order of the motion; else 0.
     retreats: int
@@ -58,6 +64,8 @@ class Record:
             count = int(getattr(self, name).sum())
             if count:
                 yield f"{count} of {rows} rows {what}"
+        if self.holes:
+            yield f"some {sum(self.holes.values())} rows are not there: {self.column} leaps"
 
     def to_dict(self) -> dict[str, int | float]:
         return {
@@ -108,6 +116,8 @@ def inspect_record(readings: Readings) -> Record:
         where_clipped=tuple(cut),
         gaps=int((steps > _WIDE * median).sum()) if median > 0 else 0,
         widest=float(steps.max()),
+        holes=_holes(steps),
+        column=readings.running,
         retreats=_retreats(readings, median),
     )
 
@@ -175,6 +185,14 @@ def _clipped(column: Floats, moving: Booleans, loaded: float) -> Booleans:
         if piled and side * values[at] > loaded:
             found |= column == values[at]
     return found
+
+
+def _holes(steps: Floats) -> dict[int, int]:
+    """Where rows are not there: elsewhere a source has fewer stations, as it likes, or jitter."""
+    around = sliding_window_view(np.pad(steps, _BESIDE), 2 * _BESIDE + 1)
+    beside = np.delete(around, _BESIDE, axis=1).max(axis=1)
+    wide = np.flatnonzero((steps > _WIDE * beside) & (beside > 0))
+    return {int(i): round(float(steps[i] / beside[i])) - 1 for i in wide}
 
 
 def _retreats(readings: Readings, median: float) -> int:

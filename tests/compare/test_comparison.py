@@ -120,3 +120,13 @@ def test_a_reference_that_is_too_coarse_is_noted():
         found = compare(solve_sweep(case), finer)
         assert found.agrees and found.alignment.counts["reference_coarse"]
         assert any("smaller steps" in one for one in found.remarks) == noted
+
+
+@pytest.mark.parametrize(("rows", "agrees"), [(range(40, 55), False), (range(95, 99), True)])
+def test_rows_that_are_not_there_amid_contact_are_no_agreement(rows, agrees):
+    """Fifteen of a hundred; the last ones are of a vibrissa that is free."""
+    exact = solve_sweep(Case(profile=circle(1.0, (0.0, 0.5)), sweep=Sweep(100)))
+    table = exact.table.drop(index=list(rows)).reset_index(drop=True)
+    found = compare(exact, Readings(table[["foot_x", *CLAMP_READINGS]]))
+    assert found.agrees == agrees
+    assert agrees or "15 rows are not there" in found.likely

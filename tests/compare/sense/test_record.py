@@ -40,7 +40,11 @@ def test_defects_are_counted(noisy):
     found = inspect_record(changed(noisy, moment_z=noisy.values("moment_z").clip(max=limit)))
     np.testing.assert_array_equal(found.clipped, over)
     assert found.where_clipped == ("moment_z",)
-    assert inspect_record(replace(noisy, table=noisy.table.drop(range(80, 90)))).gaps == 1
+    holed = inspect_record(replace(noisy, table=noisy.table.drop(range(80, 90))))
+    assert holed.gaps == 1 and holed.holes == {79: 10}
+    assert "some 10 rows are not there: foot_x leaps" in list(holed.defects())
+    fine = noisy.table.iloc[np.sort([*range(0, 120, 8), *range(120, 200)])]
+    assert inspect_record(replace(noisy, table=fine)).holes == {}  # fewer at first, as it likes
 
 
 def test_a_station_that_says_that_it_failed_lacks_nothing(noisy):
