@@ -185,12 +185,12 @@ def _dimensions(file: Table) -> Iterator[tuple[tuple[str, str], float, bool]]:
     """Each number but 0 that has a unit or should, with its keys and whether the file states it."""
     for name in _WITH_UNITS:
         table: Any = getattr(file, name, None)
-        # A shape whose scale has a unit is itself in units of the scale.
+        # A shape whose scale has a unit is itself in units of the scale, but for a mesh's offset.
         relative = name == "profile" and isinstance(getattr(table, "scale", None), InSI)
         for key, value in table or ():
             stated = key in table.model_fields_set
             for number in _numbers(value):
-                factor = not stated if key == "scale" else relative  # a scale of 1 is a factor
+                factor = not stated if key == "scale" else relative and key != "offset"
                 if isinstance(number, InSI) or (isinstance(number, Bare) and number and not factor):
                     yield (name, key), number, stated
 

@@ -45,8 +45,8 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
                      "across the vibrissa",
                      on_rail(found) if found.hand is None else ())  # fmt: skip
     elif "which is a force" in found.drive:
-        yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
-                     "its speed")  # fmt: skip
+        yield Remark("fault", "foot", f"{found.drive}: nothing holds its speed",
+                     "take a position or velocity actuator")  # fmt: skip
     elif found.drive.startswith("mocap"):  # what is welded to one has a speed
         rubs = any(geom.meets and geom.friction for geom in found.geoms)
         said = (

@@ -262,13 +262,18 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
         if _silent(sensor):
             cause, remedy = (
                 ("MuJoCo leaves the weld that holds its free body out of what it feels",
-                 "put its site on the first link, or hold that body by a slide with a velocity "
-                 "actuator instead of joint and weld")
+                 "let a body of its own, in the free one, hold the first joint and the site, or "
+                 "hold the free one by a slide with a velocity actuator")
                 if sensor.free else
                 ("it is not between foot and vibrissa", "put its site there")
             )  # fmt: skip
             yield Remark("fault", f"{word} sensor", f"{sensor.name!r} reads nothing of a load on "
                          f"the tip: {cause}", remedy)  # fmt: skip
+            continue
+        if sensor.bends:
+            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is on a link, and turns with "
+                         "it as the vibrissa bends", "put its site on the body that holds the first"
+                         " joint", treatment.before_joints(found, sensor))  # fmt: skip
             continue
         yield from _axes(word, sensor)
         most = FORCE * as_intended(found) / found.length ** (2 if word == "force" else 1)

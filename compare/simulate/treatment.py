@@ -197,6 +197,14 @@ def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
     return (Edit("site", (("pos", _place(sensor.clamp, length)),), (sensor.site,)),)
 
 
+def before_joints(found: MeasuredBeam, sensor: Sensed) -> tuple[Edit | Insert, ...]:
+    """A sensor's site on what holds the first joint."""
+    if not found.body:
+        return ()
+    own = Edit("sensor", (("site", "clamp-site"),), (sensor.number,))
+    return _site(found, "clamp-site"), own
+
+
 def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     if not found.body:
         return ()

@@ -137,7 +137,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         force=force,
         torque=torque,
         planar=_planar(held, axes[2]),
-        torsion=_torsion(held, axes[1], tip_rigidity, length),
+        torsion=_torsion(held, axes[1], length / float(bending.compliances.sum()), length),
         self_contacts=self_contacts(model, parts),
         in_the_way=tuple(sorted(in_the_way | beside_it(model, parts, held.data, axes, length))),
         on_its_way=tuple(

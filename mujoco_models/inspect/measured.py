@@ -40,6 +40,7 @@ class Sensed:
     feels_contacts: bool
     cutoff: float  # the largest reading that it gives; infinite if it has no such limit
     free: bool  # whether it is on a free body: MuJoCo leaves what a weld does to that out
+    bends: bool  # whether it is on a link, and turns with it as the vibrissa bends
     late: float = 0.0  # by its own delay, and the time from one reading to the next
 
 

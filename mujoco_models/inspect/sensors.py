@@ -80,6 +80,7 @@ def _seen(
         _feels_contacts(held, sensor),
         cutoff,
         bool((joints == mujoco.mjtJoint.mjJNT_FREE).any()),
+        int(held.model.body_weldid[body]) in held.parts.chain,
         float(held.late[sensor]),
     )
 

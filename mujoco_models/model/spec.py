@@ -96,5 +96,5 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
             "MuJoCo's model",
             f"impossible ({' '.join(str(error).split())[:150]})",
             "of a vibrissa and an object that are neither too thin nor too small for MuJoCo",
-            "give a larger radius or object: some 1e-4 L is the least",
+            "give a larger radius or object, or state all in smaller units, as mm without units",
         ) from error

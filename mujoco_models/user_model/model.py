@@ -5,7 +5,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
@@ -60,6 +60,7 @@ class UserModelInMotion(SteppedModel):
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
         self._is_mine = np.isin(np.arange(self.model.ngeom), [*self._geoms])
         self._is_object = np.arange(self.model.ngeom) == self._object
+        self._felt = self._beyond_sensors()
         self._skin = self._skin_of(held, measured)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
         self._change(own, held)
@@ -193,10 +194,24 @@ class UserModelInMotion(SteppedModel):
         }
 
     def _touches_another(self) -> bool:
-        """Whether a loaded contact is of vibrissa or object, and not of both."""
-        of_object = (self.data.contact.geom == self._object).any(axis=1).tolist()
-        other = [i for i, on_object in enumerate(of_object) if self._skin.has(i) != on_object]
+        """Whether the vibrissa touches more than the object, or the object more that is felt."""
+        geoms = self.data.contact.geom
+        of_object = (geoms == self._object).any(axis=1)
+        felt = (of_object & (self._felt[geoms] & (geoms >= 0)).any(axis=1)).tolist()
+        other = [
+            i for i, on_object in enumerate(of_object.tolist())
+            if (felt[i] if not self._skin.has(i) else not on_object)
+        ]  # fmt: skip
         return bool((self._forces(other)[:, 0] > 0).any())
+
+    def _beyond_sensors(self) -> Booleans:
+        """Geoms whose contacts the sensors feel, the vibrissa's or not."""
+        model, felt = self.model, np.zeros(self.model.nbody, dtype=bool)
+        for sensor in (self._parts.force, self._parts.torque):
+            felt[model.site_bodyid[model.sensor_objid[sensor]]] = True
+        for body in range(1, model.nbody):
+            felt[body] |= felt[model.body_parentid[body]]
+        return np.asarray(felt[model.geom_bodyid])
 
     def _touched(self) -> dict[str, Any]:
         numbers, forces = self._loaded()

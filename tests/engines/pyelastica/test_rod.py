@@ -140,7 +140,7 @@ def test_what_does_not_come_to_rest_is_not_ok(monkeypatch):
     [
         (named_case("rubbing"), "friction"),
         (named_case("pre-curved"), "natural_curvature"),
-        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), "cannot touch a line"),
+        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), "cannot collide a line"),
     ],
 )
 def test_what_it_has_not_is_a_line(case, says):

@@ -32,6 +32,25 @@ def test_a_sound_chain_is_the_beam_that_it_stands_for(tmp_path):
         np.testing.assert_allclose(sensor.lever, 0, atol=1e-3)
 
 
+def test_a_cone_of_balls_twists_as_easily_as_it_bends(tmp_path):
+    """Ten to one, whose tip shows an EI a hundredth of the clamp's."""
+    path = Chain(stiffer={i: (1 - 0.9 * i / 20) ** 4 for i in range(1, 21)}).write(tmp_path)
+    path.write_text(path.read_text().replace('<joint axis="0 0 1"', '<joint type="ball"')
+                    .replace('springref="0.0"', ""))  # fmt: skip
+    assert inspect_model(path).torsion == pytest.approx(1, rel=1e-6)
+
+
+def test_a_sensor_on_a_link_turns_with_it(tmp_path):
+    path = Chain().write(tmp_path)
+    site, link = '<site name="clamp" />', '<body name="whisker3" pos="0 0.05 0">'
+    text = path.read_text()
+    assert site in text and link in text
+    path.write_text(text.replace(site, "").replace(link, link + site))
+    found = inspect_model(path)
+    assert found.force.bends and found.torque.bends
+    assert not measured(tmp_path).force.bends
+
+
 @pytest.mark.parametrize("first", ["centre", "start", "end"])
 def test_where_it_first_bends_shows_in_its_first_cell(tmp_path, first):
     found = measured(tmp_path, Chain(first=first))
@@ -45,7 +64,7 @@ def test_where_it_first_bends_shows_in_its_first_cell(tmp_path, first):
     [(0.1, 0.0, 0.0), (0.8, 0.0, 0.0), (0.1, 0.7, 0.0), (0.8, 0.7, 0.01)],
 )
 def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt, at_rest):
-    """By a load: not by what it is twisted at rest."""
+    """By a load: not by what it is twisted at rest, where its hinges are in no plane."""
     path = Chain().write(tmp_path)
     bends = '<joint axis="0 0 1" stiffness="20.0"'
     twists = f'<joint axis="0 1 0" stiffness="{20 * torsion}" damping="0.1" '
@@ -54,7 +73,7 @@ def test_a_hinge_along_it_twists_it(tmp_path, torsion, tilt, at_rest):
     turned = text.replace('name="whisker-foot"', f'name="whisker-foot" euler="{tilt} 0.3 0"')
     path.write_text(turned)
     found = inspect_model(path)
-    assert found.torsion == pytest.approx(torsion / found.tip_rigidity, rel=1e-5)
+    assert found.torsion == pytest.approx(torsion, rel=0.02 if at_rest else 1e-6)
     assert measured(tmp_path).torsion == np.inf
 
 

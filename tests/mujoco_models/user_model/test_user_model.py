@@ -121,6 +121,19 @@ def test_a_station_that_touches_another_thing_says_so(tmp_path, plain, chain):
     assert other[first : first + 10].all()
 
 
+def test_another_vibrissa_that_the_sensors_do_not_feel_is_no_other_thing(tmp_path):
+    """Two on one carriage, each on a body of its own: the object meets the other one, too."""
+    path = Chain(foot="").write(tmp_path)
+    other = Chain(foot='pos="0 0 0.2"').text("other").replace('name="clamp"', "")
+    weight = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    head, foot, tail = path.read_text().partition('<body name="whisker-foot" >')
+    text = f'{head}<body name="carriage">{RAIL}{weight}{other}{foot}{tail}'
+    path.write_text(text.replace("</worldbody>", "</body></worldbody>"))
+    own = OwnModel(path, foot="whisker-foot", **OURS)
+    found = simulate_model(UNIT, own, FAST, COARSE).table
+    assert "touches another" not in set(found["status"])
+
+
 def test_sensors_are_added_at_a_site(tmp_path, plain):
     """In memory, and they read what the model's own ones there would."""
     without = Chain(sensors="").write(tmp_path)
