@@ -68,16 +68,6 @@ def sides(after: int, starts: Integers, count: int) -> Iterator[tuple[int, slice
     yield last, slice(max(ends[last - 1], after - 3), after + 1)
 
 
-def neighbours(station: int, starts: Integers, count: int) -> Iterator[slice]:
-    """Up to three stations of its stretch on either side, which lead to where one would be."""
-    ends = np.append(starts, count)
-    one = int(np.searchsorted(ends, station, side="right"))
-    for near in (slice(max(ends[one - 1], station - 3), station),
-                 slice(station + 1, min(ends[one], station + 4))):  # fmt: skip
-        if near.stop - near.start > 1:
-            yield near
-
-
 def beside(x: Floats, places: Floats, size: float) -> Booleans:
     """Which of `x` are no farther from a stretch between two places than a jump may be off."""
     return np.asarray(np.abs(x - places.mean()) <= np.ptp(places) / 2 + _ASIDE * size)

@@ -115,7 +115,10 @@ def test_what_is_no_reading_is_an_error(given_, said):
 
 @pytest.mark.slow
 def test_a_million_rows():
-    """A rig's file at 10 kHz is compared, most of its rows."""
+    """A rig's file at 10 kHz is compared, but for the borders of phases and the snap-off's.
+
+    Between the last three stations of 200 before that, the reference is not known well enough.
+    """
     rng = np.random.default_rng(0)
     exact = exact_sweep("parabola")
     x = np.linspace(*exact.values("foot_x")[[0, -1]], 1_000_000)
@@ -128,4 +131,5 @@ def test_a_million_rows():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         found = compare(exact, rig, noise="auto")
-    assert found.alignment.counts["compared"] > 900_000
+    assert found.alignment.counts["compared"] > 890_000
+    assert found.alignment.counts["reference_coarse"] < 16_000

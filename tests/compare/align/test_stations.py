@@ -250,14 +250,12 @@ def test_what_is_interpolated_by():
     np.testing.assert_array_equal(interpolant(np.ones(2), np.array([1.0, 3.0]))(at), [2.0, 2.0])
 
 
-@pytest.mark.parametrize(("wrong", "kept"), [(0.0, False), (0.3, True)])
-def test_a_station_that_holds_on_to_a_corner_alone_is_left_out(wrong, kept):
-    """The reference does, for one station; the candidate is where its neighbours lead, or not."""
-    holding, candidate = made(X), made(X)
-    at = int(np.argmin(np.abs(X - 0.3)))
+@pytest.mark.parametrize(("stations", "kept"), [([20], False), ([20, 21], True), ([], True)])
+def test_a_station_on_another_facet_alone_is_left_out(stations, kept):
+    """One sweep holds on to a corner; of two that are side by side, or of none, it is a fault."""
+    candidate = made(X, contact_angle=np.where(np.isin(np.arange(41), stations), 0.05, 0.0))
     for name in CLAMP_READINGS:
-        holding.table.loc[at, name] += 0.5
-        candidate.table.loc[at, name] += wrong
-    found = paired(candidate, holding)
-    assert (at in found.table["station"].to_numpy()) == kept
+        candidate.table.loc[20, name] += 0.5
+    found = paired(candidate, made(X, contact_angle=np.zeros(41)))
+    assert (20 in found.table["station"].to_numpy()) == kept
     assert found.counts["beside_jump"] == (not kept)
