@@ -170,7 +170,7 @@ ADDED = (
     '<option><flag contact="disable"/></option>',
     '<compiler angle="degree" balanceinertia="true"/>',
 )  # fmt: skip
-_FEW = 13  # links
+_FEW, _MANY = 13, 35  # links
 _GARBLED = 0.25  # of all
 _SOFT = 0.15  # likewise
 
@@ -338,6 +338,8 @@ def _hidden(model: Model) -> set[str]:
         hidden |= {"damping", "uniformity"}
     if model.carrier == "weld":
         hidden |= {"force sensor", "foot"}
+    if model.links > _MANY:  # of so light ones limits give way by more than a sweep bends them
+        hidden |= {"limits"}
     if "flags, constraint" in model.planted:
         hidden |= {"contact", "time step", "limits", "friction in joints"}
     return hidden
