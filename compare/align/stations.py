@@ -17,7 +17,8 @@ from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L or rad; nearer places are one and the same
 _SELDOM = 0.01  # of the stations; of more, what they are off is not this
-_LEAP = 5e-3  # rad; from facet to facet of a mesh that is no finer
+_EXACT, _ON_SIDE = 1e-9, 1e-4  # rad; of the closed form's contact, and of one in links
+_ALIKE = 5e-3  # rad; contacts that are no farther apart are on one facet
 _SAME_PLACE = 1e-3  # of the way from station to station, where they are as near as that
 _SAME_POSE = 1e-6  # L, rad, and of a tangent's components
 _CUBIC = 4  # stations that a cubic spline needs
@@ -63,7 +64,7 @@ def align(
     A reference station at the same place is taken as it is. Otherwise the reference is
     interpolated by a cubic spline through one uninterrupted stretch of one phase. Stations
     beside a jump from corner to corner are left out, if they are as on its other side, or
-    if both sweeps record contacts that are apart there alone: one still holds on to a corner.
+    if both sweeps record contacts on facets side by side there alone: one holds on longer.
     """
     length = reference.beam.length
     size, _ = reference.running_unit
@@ -193,14 +194,27 @@ def check_same_way(reference: Readings, candidate: Readings) -> None:
 
 
 def _leapt(reference: Readings, candidate: Readings, nearest: Integers) -> Booleans:
-    """Stations at which the contacts are on two facets, and on one at their neighbours."""
+    """Stations at which the contacts are on two facets side by side, and elsewhere not apart.
+
+    Both contacts have the slope of a side of the polygon that the reference records, as hardly any
+    contact on a smooth contour has.
+    """
+    corners = np.asarray(reference.provenance.get("contour", []), dtype=float)
     sweeps = reference, candidate
-    if not all("contact_angle" in sweep.table for sweep in sweeps):
+    if corners.ndim != 2 or not all("contact_angle" in sweep.table for sweep in sweeps):
         return np.zeros(len(nearest), dtype=bool)
-    true, own = (sweep.values("contact_angle") for sweep in sweeps)
-    apart = np.nan_to_num(np.abs(true[nearest] - own))
+    with np.errstate(divide="ignore"):  # of an upright side
+        sides_ = np.unique(np.arctan(np.divide(*np.diff(corners)[::-1])))
+    true, own = (np.nan_to_num(sweep.values("contact_angle"), nan=9.0) for sweep in sweeps)
+    true = true[nearest]
+    (of_true, off_true), (of_own, off_own) = (
+        (away.argmin(axis=1), away.min(axis=1))
+        for away in (np.abs(angles[:, None] - sides_) for angles in (true, own))
+    )
+    leapt = (np.abs(of_true - of_own) == 1) & (off_true < _EXACT) & (off_own < _ON_SIDE)
+    apart = np.abs(true - own)
     beside_it = np.maximum(np.append(0.0, apart[:-1]), np.append(apart[1:], 0.0))
-    return np.asarray((apart > _LEAP) & (beside_it < _LEAP))
+    return np.asarray(leapt & (beside_it < _ALIKE))
 
 
 def _covering(x_ref: Floats, starts: Integers, x: Floats) -> Integers:

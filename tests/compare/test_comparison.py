@@ -130,3 +130,15 @@ def test_rows_that_are_not_there_amid_contact_are_no_agreement(rows, agrees):
     found = compare(exact, Readings(table[["foot_x", *CLAMP_READINGS]]))
     assert found.agrees == agrees
     assert agrees or "15 rows are not there" in found.likely
+
+
+@pytest.mark.parametrize("ahead", [1.5, 2.0])
+def test_a_station_that_is_ahead_past_a_smooth_contour_is_not_excused(ahead):
+    """As one on another branch, whose readings and contact belong together."""
+    exact = solve_sweep(Case(profile=circle(1.0, (0.0, 0.5)), sweep=Sweep(100)))
+    table, at = exact.table.copy(), 40
+    for name in (*CLAMP_READINGS, "contact_angle"):
+        step = table[name][at + 1] - table[name][at]
+        table.loc[at, name] += ahead * step
+    found = compare(exact, replace(exact, table=table))
+    assert found.alignment.counts["beside_jump"] == 0 and not found.agrees

@@ -250,12 +250,21 @@ def test_what_is_interpolated_by():
     np.testing.assert_array_equal(interpolant(np.ones(2), np.array([1.0, 3.0]))(at), [2.0, 2.0])
 
 
-@pytest.mark.parametrize(("stations", "kept"), [([20], False), ([20, 21], True), ([], True)])
-def test_a_station_on_another_facet_alone_is_left_out(stations, kept):
-    """One sweep holds on to a corner; of two that are side by side, or of none, it is a fault."""
-    candidate = made(X, contact_angle=np.where(np.isin(np.arange(41), stations), 0.05, 0.0))
+def on_facets(angles: np.ndarray) -> Readings:
+    """Past a polygon with sides at -0.1, 0 and 0.1 rad."""
+    corners = np.array([[-2.0, -1.0, 1.0, 2.0], [np.tan(0.1), 0.0, 0.0, np.tan(0.1)]])
+    return replace(made(X, contact_angle=angles), provenance={"contour": corners.tolist()})
+
+
+@pytest.mark.parametrize(
+    ("leapt", "angle", "kept"),
+    [([20], 0.1, False), ([20, 21], 0.1, True), ([], 0.1, True), ([20], 0.05, True)],
+)
+def test_a_station_on_another_facet_alone_is_left_out(leapt, angle, kept):
+    """One sweep holds on longer; of two side by side, of none, or within a side, it is a fault."""
+    candidate = on_facets(np.where(np.isin(np.arange(41), leapt), angle, 0.0))
     for name in CLAMP_READINGS:
         candidate.table.loc[20, name] += 0.5
-    found = paired(candidate, made(X, contact_angle=np.zeros(41)))
+    found = paired(candidate, on_facets(np.zeros(41)))
     assert (20 in found.table["station"].to_numpy()) == kept
     assert found.counts["beside_jump"] == (not kept)
