@@ -157,9 +157,8 @@ def _pushes(
     if high > low:
         depth = math.exp(brentq(too_deep, math.log(force / high) - 1, math.log(force / low) + 1))
     (stiffness, damping), d = at(depth), impedance_at(solimp, depth)
-    stiffness = max(stiffness, 1e-200)  # a solref may have none
     gives = (1 - d) * inverse
-    ratio = damping / 2 / math.sqrt(stiffness / gives)
+    ratio = damping / 2 * math.sqrt(gives / stiffness)  # a garbled mass yields without end
     return stiffness if weight else math.inf, damping * gives / d, ratio
 
 
