@@ -79,13 +79,10 @@ def prescribe(
     for segments, step, stiffness in LADDER:
         moved = replace(motion, timestep=step, contact_stiffness=stiffness, solref=None)
         whisker = Whisker(case, replace(settings, segments=segments), moved, period)
-        off = 0.0
-        for once in (
-            True,
-            False,
-        ):  # as past a primitive, and past a mesh: either may be farther off
-            if _least(off) <= error:
-                off = max(off, _error(reference, whisker, once))
+        try:
+            off = _error(reference, sweep_exported(whisker))
+        except DivergedError:
+            off = math.inf
         advance()
         if _least(off) <= error:
             return Prescription(whisker, off + REFERENCE_OFF)
@@ -103,14 +100,10 @@ def _least(off: float) -> float:
     return max(off / _SHARE, off + REFERENCE_OFF)
 
 
-def _error(reference: Readings, whisker: Whisker, once: bool) -> float:
+def _error(reference: Readings, moved: Readings) -> float:
     """The rms of the worst reading wherever the reference touches.
 
     What chatters there, or has lost its contact, counts as it is.
     """
-    try:
-        moved = sweep_exported(whisker, once=once)
-    except DivergedError:
-        return math.inf
     off = float(rms(Shared.of(reference).off(moved)).max())
     return math.inf if math.isnan(off) else off

@@ -16,18 +16,10 @@ from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.spec import compiled
 
 
-def sweep_exported(whisker: Whisker, *, once: bool = False) -> Readings:
-    """Sweep what is written to the left past its obstacle, from the text of its file.
-
-    Parameters
-    ----------
-    whisker : Whisker
-        What is written.
-    once : bool
-        With one contact a link, as a primitive has, for the two of a mesh.
-    """
+def sweep_exported(whisker: Whisker) -> Readings:
+    """Sweep what is written to the left past its obstacle, from the text of its file."""
     case, motion = whisker.case, whisker.motion
-    model = _Written(beside(whisker), once)
+    model = _Written(beside(whisker))
     passes = Passes(
         model,
         case,
@@ -52,10 +44,8 @@ def _stations(whisker: Whisker) -> StationMeans:
 class _Written(SteppedModel):
     """A model as MuJoCo reads it, moved by its motor."""
 
-    def __init__(self, whisker: Whisker, once: bool) -> None:
+    def __init__(self, whisker: Whisker) -> None:
         read = compiled(mujoco.MjSpec.from_string(whisker.xml()))
-        if once:
-            read.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
         super().__init__(read, "mesh", whisker.period)
         self._unit, self._beam = whisker.case.beam.length / whisker.period, whisker.case.beam
         self._foot = self.model.body(PREFIX + FOOT).id
