@@ -155,6 +155,14 @@ def rat() -> Published:
                  hold=100.0)  # fmt: skip
 
 
+def mouse() -> Published:
+    """One of its hinges is turned by 45 degrees: it twists the whisker, too."""
+    spring = 'stiffness="0.02" damping="0.02" armature="0.00065"'
+    joints = "".join(f'<joint axis="{axis}" {spring}/>' for axis in ("1 -1 0", "0 0 1"))
+    links = 12 * [Link(0.005, joints, capsule(0.005, 0.001, 'mass="1e-7"'))]
+    return chain(links, gravity="0 0 -9.81")
+
+
 WHISKER = (
     0.1, 1.25e-4, 100e9, 40e9, 40, 'damping="0.0001" armature="0.00001"',
     'condim="1" density="6450"',
@@ -210,4 +218,6 @@ CHAINS: dict[str, Callable[[], Published]] = {
     "Tentacle": tentacle,
     # github.com/SeNSE-lab/whiskitphysics, code/src/Whisker.cpp
     "Rat's whisker": rat,
+    # github.com/Shavdrag/MouseObstacleAvoidance, models/dynamic_4l_maze_env0.xml
+    "Mouse's whisker": mouse,
 }
