@@ -125,7 +125,11 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         if one.fixture not in metafunc.fixturenames:
             continue
         marker = metafunc.definition.get_closest_marker(one.marker)
-        asked = (marker.args if marker else ()) or metafunc.config.getoption(one.option)
+        # A marker's file is beside its test, or where pytest was started.
+        beside = metafunc.definition.path.parent
+        marked = [path if (path := beside / str(name)).is_file() else name
+                  for name in (marker.args if marker else ())]  # fmt: skip
+        asked = marked or metafunc.config.getoption(one.option)
         names = [str(name) for name in asked or one.every()]
         if names:
             ids = [Path(name).stem for name in names]

@@ -123,6 +123,9 @@ def _load(file: Path) -> _Read:
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         allowed = "a readable STL, OBJ, PLY, OFF, GLB or glTF"
         raise InputError("mesh file", file, allowed, f"check it ({reason})") from error
+    if not len(corners):
+        remedy = f"check that its content is that of *.{kind}"
+        raise InputError(f"mesh {file}", "without a triangle", "a solid", remedy)
     if not 1e-90 < size < 1e90:
         what, allowed = f"of size {size:.3g}", "a solid of a size between 1e-90 and 1e90"
         raise InputError(f"mesh {file}", what, allowed, "check its vertices and its unit")

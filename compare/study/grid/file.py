@@ -159,8 +159,10 @@ class _Base:
         if component:
             whole = replaced(self._components(table, inner), component[0], value)
             plain = self._tried(table, inner, whole, place)
-            # `_check_key` has seen that there are as many as components.
-            found = dict(zip(COMPONENTS_OF, plain, strict=True))[component[0]]  # type: ignore[call-overload]
+            found = plain[COMPONENTS_OF.index(component[0])]  # type: ignore[index]
+        elif parts := self._components_of(table, inner):
+            remedy = f"vary {key}.{parts[0]}"
+            raise self._wrong(place, shown(value), "one number or word", remedy)
         else:
             found = self._tried(table, inner, value, place)
         if isinstance(value, bool) != isinstance(found, bool):
@@ -256,11 +258,11 @@ class _Base:
             or (component and component[0] not in COMPONENTS_OF)
         ):
             remedy = (
-                "write it as in a case file, as beam.radius; path.tangent.x of what has x, y, z"
+                "write it as in a case file, as beam.radius; path.tangent.x of what has x and y"
             )
             raise self._wrong(place, "an axis", f"a key of {', '.join(RUN_TABLES)}", remedy)
-        if component and len(self._components(table, inner[0])) != len(COMPONENTS_OF):
-            allowed = "a component of x, y, z"
+        if component and component[0] not in (there := self._components_of(table, inner[0])):
+            allowed = f"{inner[0]} whole, or its {', '.join(there)}" if there else "without a part"
             raise self._wrong(place, "an axis", allowed, "leave the component out")
         if key == BEAM and place[0] == "axes":
             raise self._wrong(place, "an axis", "given as study.beams", "list the beams there")
@@ -279,6 +281,13 @@ class _Base:
             remedy = "vary what it is a unit of"
             raise self._wrong(place, shown(value), "in natural units", remedy)
         return plain[key]
+
+    def _components_of(self, table: str, key: str) -> Sequence[str]:
+        """Names of the components, where a key holds a place or direction."""
+        whole = self._components(table, key)
+        if len(whole) not in (2, 3) or any(isinstance(one, list | dict) for one in whole):
+            return ()
+        return COMPONENTS_OF[: len(whole)]
 
     def _components(self, table: str, key: str) -> Sequence[Any]:
         """What the file or else the case has for a key; nothing if that is no list."""

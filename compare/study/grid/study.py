@@ -121,7 +121,7 @@ BEAM = "mujoco.beam"
 ENGINE = "engine.name"
 MESHES = ("profile.file", "body.file")
 COMPONENTS_OF = ("x", "y", "z")
-"""Of a place or direction in space: ``path.tangent.x`` is a key of its own."""
+"""Of a place or direction: ``path.tangent.x`` is a key of its own."""
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 

@@ -82,6 +82,7 @@ def test_what_remembers_longer_than_a_pass_may_be_no_noise(count):
     assert any("longer than a pass" in said for said in found.noise.said(CLAMP_READINGS))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("period", [2.4, 7.3])
 def test_hum_beside_a_stated_noise_is_noise(period):
     """A circle was called none: of 1 % of noise beside 2 % of hum 1.7 times was left."""
@@ -135,6 +136,7 @@ def test_passes_that_differ_by_noise_alone_are_called_so():
     assert sum(one.consistent and not one.leave_alike for one in found) >= 194
 
 
+@pytest.mark.slow
 def test_a_sign_that_hides_the_numbers_is_named():
     (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
     other = replace(one, table=one.table.assign(force_y=-one.values("force_y")))

@@ -109,6 +109,7 @@ def test_another_body_is_none_of_them(sweeps):
     assert not fit_body(sweeps["ellipsoid"], "sphere").explains
 
 
+@pytest.mark.slow
 def test_what_says_too_little_is_a_line(sweeps):
     with pytest.raises(InputError, match=r"family = 'circle'.*sphere"):
         fit_body(sweeps["sphere"], "circle")
@@ -118,6 +119,7 @@ def test_what_says_too_little_is_a_line(sweeps):
         fit_body(replace(few, table=few.table.iloc[: touched[3] + 1]), "auto")
 
 
+@pytest.mark.slow
 def test_gaps_and_a_sweep_that_touches_nothing(sweeps):
     """What is missing is left out; a pass that shows nothing is named."""
     gapped = sweeps["sphere"][0]

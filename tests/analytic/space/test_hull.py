@@ -113,6 +113,7 @@ def test_two_bodies_are_no_convex_one(sweeps):
     assert not band.explains
 
 
+@pytest.mark.slow
 def test_what_says_too_little_is_a_line(sweeps):
     idle = replace(sweeps["egg"][0], table=sweeps["egg"][0].table.iloc[:3])
     with pytest.raises(InputError, match="contacts = 0: must be 8 or more"):
@@ -131,6 +132,7 @@ def test_what_says_too_little_is_a_line(sweeps):
         convex_band([other, replace(other, beam=Beam(2.0))])
 
 
+@pytest.mark.slow
 def test_a_gap_is_left_out(sweeps):
     one, *others = sweeps["egg"]
     gapped = replace(one, table=one.table.assign(**{SENSED_IN_SPACE[3]: np.nan}))

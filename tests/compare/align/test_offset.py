@@ -167,6 +167,7 @@ def test_what_leaves_no_offset_is_named(wrong, said):
     assert said in found.likely
 
 
+@pytest.mark.slow
 def test_an_offset_that_a_rigidity_imitates_is_not_advised_again():
     exact = solve_sweep(Case(profile=circle(1 / 3, (0.05, 0.73)), sweep=Sweep(200)))
     noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), 3)

@@ -153,6 +153,7 @@ def test_what_sweeps_our_models_only_says_so(folder):
     vibrissa("view", "case.toml", cwd=folder).refused("motion")
 
 
+@pytest.mark.slow
 def test_past_two_objects_it_is_swept_and_reported(tmp_path):
     """At rest MuJoCo takes one: nothing beside rest, and no budget is advised."""
     (tmp_path / "posts.toml").write_text(

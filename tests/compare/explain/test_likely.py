@@ -127,6 +127,7 @@ def test_who_touches_is_not_said_never_to_touch(made, said):
     assert ("never touches" in found.likely) == (made is mute)
 
 
+@pytest.mark.slow
 def test_a_contact_ends_early_only_where_it_agrees_up_to_there():
     exact = solve_sweep(named_case("parabola"))
     last = np.flatnonzero(exact.table["phase"] != "free")[-1]

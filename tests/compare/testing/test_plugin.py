@@ -179,6 +179,17 @@ def test_a_file_of_the_users_that_hides_a_package(pytester, hidden):
     result.stderr.fnmatch_lines([f"ERROR: --vibrissa-case: {said}"])
 
 
+def test_a_file_that_a_marker_names_is_beside_its_test(pytester):
+    folder = pytester.mkdir("checks")
+    (folder / "own.toml").write_text(
+        '[profile]\nkind = "circle"\nradius = 0.5\nlowest = [0.0, 0.6]\n'
+    )
+    (folder / "test_own.py").write_text(
+        "import pytest\n@pytest.mark.vibrissa('own.toml')\ndef test_own(vibrissa_case): pass\n"
+    )
+    pytester.runpytest().assert_outcomes(passed=1)
+
+
 def test_who_does_not_use_it_waits_less_than_50_ms_and_for_nothing_heavy():
     code = (
         "import pytest, sys, time; begin = time.process_time(); import pytest_vibrissa; "

@@ -111,6 +111,7 @@ def test_a_step_in_which_friction_overshoots_is_refused():
         simulate_motion(CASE, Motion(solref=(0.01, 1.0)), Settings(segments=6))
 
 
+@pytest.mark.slow
 def test_where_the_foot_is_slow_the_contact_creeps_and_says_so():
     """Past a sphere, at 0.005 L/T1, with 0.15 to 0.29 of 0.3 readings were 5 % off."""
     body, path = sphere(1.0, centre=(0, 1.4, 0)), FootPath([[1.0, 0.3], [0.6, 0.3]], stations=9)

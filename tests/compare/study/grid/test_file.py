@@ -212,3 +212,22 @@ def test_a_motion_varies_in_natural_units(plan_of):
     assert [run["motion.speed"] for run in parameters(plan)] == pytest.approx([0.28, 0.56])
     with pytest.raises(InputError, match="in natural units"):
         plan_of(steel + 'axes.motion.period = ["28 ms", "30 ms"]')
+
+
+def test_a_part_of_a_place_varies_in_the_plane(plan_of):
+    text = """
+        study.beams = []
+        beam = { length = "100 mm", flexural_rigidity = "6.4e-4 N m^2" }
+        profile = { kind = "ellipse", semi_axes = ["40 mm", "20 mm"], lowest = ["0 mm", "50 mm"] }
+        axes.profile.semi_axes.x = ["30 mm", "50 mm"]
+        axes.profile.lowest.y = { from = "40 mm", to = "60 mm", count = 3 }
+    """
+    plan = plan_of(text)
+    assert parameters(plan)[-1] == pytest.approx(
+        {"profile.semi_axes.x": 0.05, "profile.lowest.y": 0.06}
+    )
+    assert run_of(plan.study.base | parameters(plan)[-1]).profile.semi_axes == (0.05, 0.02)
+    with pytest.raises(InputError, match=r"line 5.*semi_axes whole, or its x, y"):
+        plan_of(text.replace("semi_axes.x", "semi_axes.z"))
+    with pytest.raises(InputError, match=r"vary profile.semi_axes.x"):
+        plan_of(text.replace("semi_axes.x =", "semi_axes ="))
