@@ -132,7 +132,7 @@ def side_by_side_document(found: SideBySide) -> Document:
         "squares over the stations in contact, relative to each reading's largest magnitude.",
         Verdict(
             found.agree,
-            f"{'All' if found.agree else 'Not all'} agree with {_named(reference)}.",
+            _tally(found),
             "" if found.split is None else found.split.sentence,
         ),
         sections(
@@ -141,6 +141,14 @@ def side_by_side_document(found: SideBySide) -> Document:
             ("fairness", "What was set for each engine, and by whom", _fairness(found)),
         ),
     )
+
+
+def _tally(found: SideBySide) -> str:
+    agree = sum(one.agrees for one in found.outcomes)
+    none = sum(one.trouble is not None for one in found.outcomes)
+    agrees = f"{agree} of {len(found.outcomes)} agree{'s' * (agree == 1)}"
+    no_readings = f", {none} gave no readings" if none else ""
+    return f"{agrees} with {_named(found.reference)}{no_readings}."
 
 
 def _named(reference: Readings) -> str:

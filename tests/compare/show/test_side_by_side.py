@@ -82,6 +82,13 @@ def many(exact):
     return SideBySide.of(exact, {"mine": mine}, asked, case="parabola")
 
 
+def test_one_without_readings_is_not_said_to_disagree(exact):
+    asked = [EngineOutcome("mine"), EngineOutcome("lost", trouble="not installed")]
+    said = side_by_side_document(SideBySide.of(exact, {"mine": exact}, asked)).verdict
+    assert said.good is False
+    assert said.claim == "1 of 2 agrees with the closed form, 1 gave no readings."
+
+
 def test_of_few_settled_stations_there_are_no_figures(exact):
     """One station in contact may agree to any digit."""
     bad = exact.table.assign(status="unsettled")
