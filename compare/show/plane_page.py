@@ -78,9 +78,10 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
     yield from common.sizes(comparison, worst_reading(comparison))
     apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
-    shift = "not in both" if apart is None else short(apart / size, f" {unit}")
-    if apart is not None and comparison.snap_off.uncertainty:
-        shift += f" +- {short(comparison.snap_off.uncertainty / size)}"
+    unsure, shift = comparison.snap_off.uncertainty, "not in both"
+    if apart is not None:
+        half = f" ± {short(unsure / size)}" if unsure else ""
+        shift = f"{short(apart / size)}{half} {unit}"
     yield Tile("snap-off apart", shift, "candidate less reference")
     alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
     if alike is not None:
