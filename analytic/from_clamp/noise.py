@@ -13,6 +13,10 @@ from analytic.problem.readings import Readings
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
 _SURELY = 1e-6  # of it: no zero is known better
+SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is no noise
+_IDLE = 10  # stations that show how large noise is where nothing touches
+# Over the root of their number: three standard deviations of what such a median says of white noise
+_CLEARLY = 3.5
 _COARSE = 0.5  # of the stations, not all, are as the one before: a converter hides the noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
@@ -34,6 +38,40 @@ def reading_noise(readings: Readings) -> dict[str, float]:
     values = {name: readings.values(name) for name in CLAMP_READINGS}
     loaded = readings.trusted & (np.hypot(values["force_x"], values["force_y"]) > 0)
     return {name: scatter(column[loaded]) for name, column in values.items()}
+
+
+def resting_noise(values: Floats, seen: Floats) -> Floats:
+    """What readings scatter by off the contact, if that is clearly more than is `seen` in jumps.
+
+    Noise that remembers jumps little. `values`, shape (3, stations), forces first, are of trusted
+    stations. Those off the stretch of most load count whose force noise explains, of `seen` first,
+    then of what these scatter by; and of those what has the sign that the load beside has not.
+    """
+    force = np.hypot(*values[:2])
+    loaded = force > SIGMAS * np.hypot(*seen[:2])
+    which = np.cumsum(np.diff(loaded, prepend=False))
+    load = np.bincount(which, weights=np.where(loaded, force, 0.0), minlength=1)
+    if not load.any():
+        return seen
+    contact = np.flatnonzero(which == np.argmax(load))
+    sides = slice(0, contact[0]), slice(contact[-1] + 1, None)
+    off = [
+        np.where(values[:, side] * values[:, near].sum(axis=1)[:, None] < 0, values[:, side], 0.0)
+        for side, near in zip(sides, (contact[:_IDLE], contact[-_IDLE:]), strict=True)
+    ]
+    against = np.abs(np.concatenate(off, axis=1))
+    other = np.concatenate([force[side] for side in sides])
+    while True:
+        idle = against[:, other <= SIGMAS * np.hypot(*seen[:2])]
+        more = seen.copy()
+        for i, row in enumerate(idle):
+            row = row[row > 0]
+            if len(row) >= _IDLE:
+                shown = np.median(row) / MEDIAN_OF_NORMAL
+                more[i] = shown if shown > (1 + _CLEARLY / len(row) ** 0.5) * seen[i] else seen[i]
+        if (more == seen).all():
+            return more
+        seen = more
 
 
 def scatter(values: Floats) -> float:

@@ -6,13 +6,19 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, dimensionless
-from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
+from analytic.from_clamp.noise import (
+    MEDIAN_OF_NORMAL,
+    SIGMAS,
+    checked_noise,
+    largest,
+    reading_noise,
+    resting_noise,
+)
 from analytic.from_clamp.turning import as_upright
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.readings import Readings
 
-_SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is no noise
 _BEYOND_TIP = -0.1  # what lies farther beyond the tip is not located
 _UNKNOWN = 1e-3  # of the largest magnitude; too few stations show no noise: alike in all readings
 _STEP = 0.05  # of the largest magnitude, at most, for a derivative
@@ -38,15 +44,15 @@ class Judgement(NamedTuple):
     @property
     def neither(self) -> Booleans:
         """Whether the contact is neither at the tip nor tangential, shape (stations,)."""
-        oblique = np.maximum(_OBLIQUE, _SIGMAS * self.criterion_tolerance)
+        oblique = np.maximum(_OBLIQUE, SIGMAS * self.criterion_tolerance)
         short = _short_of_tip(self.shortfall, self.shortfall_tolerance)
         return np.asarray(short & (np.abs(self.criterion) > oblique))
 
     @property
     def explained(self) -> Booleans:
         """Whether noise, or a model's error, explains all that is missed of a phase's condition."""
-        at_tip = np.maximum(_MODEL, _SIGMAS * self.shortfall_tolerance)
-        parallel = np.maximum(_MODEL, _SIGMAS * self.criterion_tolerance)
+        at_tip = np.maximum(_MODEL, SIGMAS * self.shortfall_tolerance)
+        parallel = np.maximum(_MODEL, SIGMAS * self.criterion_tolerance)
         tangent = (self.shortfall > 0) & (np.abs(self.criterion) <= parallel)
         return np.asarray((np.abs(self.shortfall) <= at_tip) | tangent)
 
@@ -62,10 +68,11 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     short of the tip by more than a tenth of the length, and by more than noise explains, is never
     taken to be at it.
 
-    The noise is what the readings themselves show (`reading_noise`), and what is stated if that is
-    more. Stations that lie too far apart seem to jump; but then their readings meet the conditions
-    far better than such noise allows, and no contact is taken for none. Nor is it where stations
-    without contact show no noise at all, as a simulator's, whose readings may jump amid contact.
+    The noise is what the readings themselves show (`reading_noise`, `resting_noise`), and what is
+    stated if that is more. Stations that lie too far apart seem to jump; but then their readings
+    meet the conditions far better than such noise allows, and no contact is taken for none. Nor is
+    it where stations without contact show no noise at all, as a simulator's, whose readings may
+    jump amid contact.
     """
     if readings.running != "foot_x":
         leftward = readings.mirrored() if readings.runs_right else readings
@@ -77,7 +84,7 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     stated = np.array([given.get(name, 0.0) for name in CLAMP_READINGS])
     unit = units(readings.beam, CLAMP_READINGS)
     magnitudes = np.array([largest(values) for values in sensed[1:]])
-    seen, stated = seen / unit, stated / unit
+    seen, stated = resting_noise(sensed[1:, readings.trusted], seen / unit), stated / unit
     known = np.maximum(seen, stated)
     noise_x, noise_y, noise_m = known if known.any() else _UNKNOWN * magnitudes
 
@@ -110,9 +117,9 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     better = better[~np.isnan(better)]
     met = float(np.median(better)) / MEDIAN_OF_NORMAL if better.size else 1.0
     drowning = np.maximum(stated, seen * (met if met < _UNRESOLVED else 1.0))
-    least = max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
+    least = max(SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
     if _silent(f[trusted], least):
-        least = max(_SIGMAS * np.hypot(*stated[:2]), UNLOADED)
+        least = max(SIGMAS * np.hypot(*stated[:2]), UNLOADED)
     loaded = f > least
 
     tangent = (of_criterion < of_shortfall) | _short_of_tip(shortfall, shortfall_tolerance)
@@ -164,7 +171,7 @@ def _silent(force: Floats, least: float) -> bool:
 
 def _short_of_tip(shortfall: Floats, tolerance: Floats) -> Booleans:
     """Whether contacts are so far from the tip that nothing else than another place explains it."""
-    return np.asarray(shortfall > np.maximum(_SHORT, _SIGMAS * tolerance))
+    return np.asarray(shortfall > np.maximum(_SHORT, SIGMAS * tolerance))
 
 
 def _spread(of: Floats, step: Floats) -> Floats:

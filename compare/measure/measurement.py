@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import InputError, Readings
+from analytic.from_clamp.noise import SIGMAS
 from compare.align.offset import (
     NoOffsetError,
     Offset,
@@ -30,8 +31,6 @@ from compare.sense.transitions import (
     shows_beyond,
     snap_off,
 )
-
-_SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more is no noise
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -98,19 +97,22 @@ class Measurement(SweepPair[Readings]):
     def unsure(self) -> list[str]:
         """Limits of a Phase B that one sweep alone has.
 
-        As far as its noise lets it be seen, or where the other one has no station during it.
+        As far as its noise lets the phases on both sides be seen, or where the other one has no
+        station during it.
         """
         found = []
-        for name, has, lacks, _ in self._one_sided():
+        for name, has, lacks, place in self._one_sided():
             if not name.startswith("phase_b"):
                 continue
-            here = self.judged[has].phase == "tangent"
-            tolerance = self.judged[has].shortfall_tolerance[here]
-            sure = (self.judged[has].shortfall[here] > _SIGMAS * tolerance).any()
-            during = getattr(self, has).running_values[here]
-            theirs = getattr(self, lacks).running_values
+            judged, along = self.judged[has], getattr(self, has).running_values
+            here = judged.phase == "tangent"
+            sure = judged.shortfall[here] > SIGMAS * judged.shortfall_tolerance[here]
+            way = np.sign(along[-1] - along[0]) * (1 if name == "phase_b_end" else -1)
+            beyond = (judged.phase == "tip") & (way * (along - place) > 0)
+            oblique = np.abs(judged.criterion) > SIGMAS * judged.criterion_tolerance
+            during, theirs = along[here], getattr(self, lacks).running_values
             met = ((during.min() <= theirs) & (theirs <= during.max())).any()
-            found += [] if sure and met else [name]
+            found += [] if sure.any() and oblique[beyond].any() and met else [name]
         return found
 
     def not_trusted(self) -> list[str]:

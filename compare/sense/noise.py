@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.from_clamp.noise import largest, reading_noise
+from analytic.from_clamp.noise import largest, reading_noise, resting_noise
 
 NOTHING = 1e-100  # in any units: less is no load
 _ROUNDING = 1e-16  # of a moment beside a force times length: less is none
@@ -41,16 +41,21 @@ def scales(reference: Readings) -> dict[str, float]:
 def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:
     """Noise of the two sweeps together, estimated.
 
-    Anything that jumps from station to station counts, as the facets of a coarse mesh do; of a mean
-    of passes what these scatter by, too, as hum does, which hardly jumps.
+    Anything that jumps from station to station counts, as the facets of a coarse mesh do, and what
+    readings scatter by off the contact; of a mean of passes what these scatter by, too, as hum
+    does, which hardly jumps.
     """
-    one, other, scale = _seen(reference), _seen(candidate), scales(reference)
+    one, other, scale = shown_noise(reference), shown_noise(candidate), scales(reference)
     return {name: float(np.hypot(one[name], other[name])) / scale[name] for name in CLAMP_READINGS}
 
 
-def _seen(readings: Readings) -> dict[str, float]:
+def shown_noise(readings: Readings) -> dict[str, float]:
+    """Standard deviation of each clamp reading's noise, also of what remembers."""
     between = readings.provenance.get("scatter", {})
-    return {name: max(x, between.get(name, 0.0)) for name, x in reading_noise(readings).items()}
+    values = np.stack([readings.values(name) for name in CLAMP_READINGS])[:, readings.trusted]
+    seen = resting_noise(values, np.array([*reading_noise(readings).values()]))
+    known = zip(CLAMP_READINGS, seen.tolist(), strict=True)
+    return {name: max(x, between.get(name, 0.0)) for name, x in known}
 
 
 def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:

@@ -10,13 +10,13 @@ from pydantic import ConfigDict
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.correlated import estimate
-from analytic.from_clamp.noise import reading_noise
 from analytic.problem.arrays import Booleans, Floats
 from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off, rms
 from compare.measure.measurement import Measurement
+from compare.sense.noise import shown_noise
 from compare.validate.sensitivities import Sensitivities, sensitivities
 from compare.validate.spread import NOISE, NUMERICS, SECOND_ORDER, Spread
 from compare.validate.stated import Uncertainties
@@ -282,9 +282,8 @@ def _noise(
 ) -> tuple[Floats, str]:
     """Standard deviation of the noise of the data, over each reading's largest magnitude."""
     sizes = dict(zip(CLAMP_READINGS, scale.tolist(), strict=True))
-    known = {n: ("estimated from the data", x / sizes[n]) for n, x in reading_noise(data).items()}
-    if (scatter := data.provenance.get("scatter")) is not None:
-        known |= {n: ("the scatter between passes", x / sizes[n]) for n, x in scatter.items()}
+    by = "the scatter between passes" if "scatter" in data.provenance else "estimated from the data"
+    known = {n: (by, x / sizes[n]) for n, x in shown_noise(data).items()}
     if asked is not None:
         known |= {n: ("of the comparison", x) for n, x in asked.level.items() if x > 0}
     known |= {n: ("stated", x / sizes[n]) for n, x in stated.noise.items()}

@@ -7,7 +7,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import CLAMP_READINGS, Case, Readings, Sweep, circle, named_case, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    relative_noise,
+    solve_sweep,
+)
 from analytic.problem.support import Support
 from compare.align.offset import without_offset
 from compare.measure.measurement import measure
@@ -15,6 +24,7 @@ from compare.measure.repeats import repeats
 from compare.sense.noise import with_noise
 from compare.simulate.rigidity import tip_of
 from docs.figures.methods import as_believed
+from tests.analytic.noisy import noisy
 from tests.compare.synthetic import BEAM, changed, solved
 
 WINDOW = 0.02
@@ -84,6 +94,34 @@ def test_a_phase_that_noise_alone_makes():
     real = measure(exact, past_a_circle(0.5), WINDOW)
     assert real.transitions["phase_b_end"].reference is None
     assert real.transitions["phase_b_end"].candidate is not None
+    assert real.unsure() == []
+
+
+def remembering(seed: int, stations: int = 600) -> tuple[Readings, Readings]:
+    """Past a circle that is met in Phase B, with noise of 1 % that remembers; half of it free."""
+    case = Case(profile=circle(0.3, (0.12, 0.68)))
+    first, last = case.foot_x[[0, -1]]
+    exact = solve_sweep(replace(case, sweep=Sweep(stations, first + 0.4, last - 0.4)))
+    seen = noisy(exact, relative_noise(exact, 0.01), seed, memory=0.9)
+    return exact, Readings(seen.table[["foot_x", *CLAMP_READINGS]], exact.beam)
+
+
+def test_noise_that_remembers_is_no_contact_and_no_phase():
+    """Its jumps are a quarter of it: free stations seemed loaded, and first ones at the tip."""
+    made = []
+    for seed in range(4, 12):
+        found = measure(*remembering(seed), WINDOW)
+        assert abs(found.snap_off.difference) < 0.01
+        one_sided = [
+            n for n, e in found.events.items() if (e.reference is None) != (e.candidate is None)
+        ]
+        assert found.unsure() == one_sided
+        made += one_sided
+    assert set(made) == {"phase_b_start"}
+    low, high = (solve_sweep(Case(profile=circle(0.3, (0.12, h)))) for h in (0.6, 0.75))
+    real = measure(low, high, WINDOW)
+    assert real.transitions["phase_b_start"].reference is None
+    assert real.transitions["phase_b_start"].candidate is not None
     assert real.unsure() == []
 
 
