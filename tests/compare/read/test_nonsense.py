@@ -196,7 +196,7 @@ def test_a_refused_pass_has_a_picture_and_leaves_the_others_as_they_are(tmp_path
 
 @pytest.mark.parametrize("rows", [(300,), (300, 301, 302), (30,)])
 def test_spikes_are_left_out_and_counted(tmp_path, rows):
-    """One cell of 9999999 was kept, and a fit found a foot that jitters by a tenth of the length."""
+    """One cell of 9999999 was kept; a fit found a foot that jitters by a tenth of the length."""
 
     def spiked(values):
         for row in rows:
