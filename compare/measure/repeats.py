@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.correlated import estimate
-from analytic.from_clamp.noise import zero_uncertainty
+from analytic.from_clamp.noise import known_to, zero_uncertainty
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.problem.arrays import Booleans, Floats
 from compare.sense.noise import scales
@@ -18,10 +18,7 @@ _STEPS = 4  # median steps of the foot that are averaged
 _FEWEST = 10  # such averages
 _SLOPES = [f"{name}_slope" for name in CLAMP_READINGS]
 # Of a pass's provenance, what is not of the mean.
-_OF_ONE_PASS = (
-    *("pass", "dropped", "rows", "lag"),
-    *("zero_uncertainty", "bend_uncertainty", "free_noise"),
-)
+_OF_ONE_PASS = "pass", "dropped", "rows", "lag", "free_noise"
 _TOUCHING = 0.02  # of a reading's largest magnitude
 _NEXT_TO_SNAP_OFF = 0.03  # of the loaded travel, where readings grow without bound
 _UNLIKE = 8.0  # times the median scatter, and ...
@@ -83,6 +80,10 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         "passes": len(passes),
         "scatter": dict(zip(CLAMP_READINGS, scattered, strict=True)),  # of the mean
     }
+    # Each pass has a zero of its own, but what is not seen of a bend they have alike.
+    for name, among in ("zero_uncertainty", len(passes)), ("bend_uncertainty", 1):
+        known = np.sqrt(np.mean([known_to(name, one) ** 2 for one in passes], axis=0) / among)
+        provenance[name] = dict(zip(CLAMP_READINGS, known.tolist(), strict=True))
     of_all = Readings(
         pd.DataFrame(mean, columns=list(SENSED)),
         passes[0].beam,

@@ -32,7 +32,7 @@ def made_of(case, exact, known) -> dict[str, float]:
         size = []
         for way in (1, -1):
             table = measure(exact, off(case, {name: way * one.standard}), _WINDOW).alignment.table
-            away = np.abs(table["foot_x"] - exact.snap_off) > 0.05
+            away = np.abs(table["at"] - exact.snap_off) > 0.05
             for n in CLAMP_READINGS:
                 apart = (table[f"{n}_candidate"] - table[f"{n}_reference"])[away] / scale[n]
                 size.append(float(np.mean(apart**2)))
