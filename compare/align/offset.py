@@ -110,8 +110,9 @@ def estimate_offset(
     All offsets that leave half of the contact in common are tried, the snap-off included. From the
     best one on, the sum of squares of the three readings' differences, each in units of its own
     scatter, is minimised (Huber's estimator) over the trusted stations that lie within one phase of
-    the reference, the last two before its snap-off left out. The variance is Newey and West's with
-    Andrews' lag window, the interval Kiefer and Vogelsang's, who account for the window's width.
+    the reference, the last two before its snap-off left out; then with a rig's zeros, and noise
+    that remembers (`estimate`). The interval is that one's or, if wider, as of a model that
+    differs, Kiefer and Vogelsang's with Newey and West's variance and Andrews' lag window.
     """
     length = reference.beam.length
     best, *others = offset_fits(reference, candidate, reference_phase, candidate_phase)
@@ -306,13 +307,14 @@ def _fit(
         if abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
     misfit = float(np.sqrt(np.mean((clipped * scatter) ** 2)))
-    if zeros is None or not zeros.any():
-        return OffsetFit(value, _half_width(score, information), misfit)
+    width = _half_width(score, information)
+    if zeros is None:
+        return OffsetFit(value, width, misfit)
     each = np.einsum("krn,rc->nckr", zeros[..., inside] / scatter, np.eye(len(scatter)))
     off = each.reshape(*clipped.T.shape, -1)
     off = off[..., off.any(axis=(0, 1))]
     found = estimate(clipped.T, (-slope / scatter).T[..., None], off, np.ones(off.shape[-1]))
-    width = DOUBLE_SIDED_95 * float(np.sqrt(found.covariance[0, 0]))
+    width = max(width, DOUBLE_SIDED_95 * float(np.sqrt(found.covariance[0, 0])))
     return OffsetFit(value + float(found.numbers[0]), width, misfit)
 
 
