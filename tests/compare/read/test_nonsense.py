@@ -191,3 +191,8 @@ def test_a_refused_pass_has_a_picture_and_leaves_the_others_as_they_are(tmp_path
     done.refused("is stuck")
     assert (tmp_path / "out" / "pass.png").stat().st_size > 10_000
     assert not (tmp_path / "out" / "pass.parquet").exists()
+
+
+def test_channels_of_zeros_are_named_without_a_warning(tmp_path):
+    files, described = rig(tmp_path, lambda values: values * [[1.0], [0.0], [0.0], [0.0]])
+    assert "touches no object" in str(look_at_passes(files, described)[0].fault)
