@@ -257,7 +257,8 @@ def _zeros(reference: Readings, candidate: Readings) -> Floats:
         np.hypot(*(known_to(name, sweep) for sweep in (reference, candidate)))
         for name in ("zero_uncertainty", "zero_uncertainty", "bend_uncertainty")
     ]
-    return np.array(known)[..., None] * np.array([along**0, along, 1 - along**2])[:, None]
+    shapes = np.array([along**0, along, 1 - along**2])
+    return np.asarray(np.array(known)[..., None] * shapes[:, None])
 
 
 def _apart(curve: _Curve, fits: list[OffsetFit | None]) -> list[float]:
