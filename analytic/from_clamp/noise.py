@@ -146,7 +146,12 @@ def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
 
 def bend_uncertainty(readings: Readings) -> Floats:
     """What a bend of each zero's drift is known to, in the middle of a rig's pass; 0 of a line."""
-    known = readings.provenance.get("bend_uncertainty", {})
+    return known_to("bend_uncertainty", readings)
+
+
+def known_to(what: str, readings: Readings) -> Floats:
+    """What a rig's pass says of an uncertainty, shape (3,), in the reading's unit; 0 if nothing."""
+    known = readings.provenance.get(what, {})
     return np.array([known.get(name, 0.0) for name in CLAMP_READINGS], dtype=float)
 
 

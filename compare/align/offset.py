@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
+from analytic.from_clamp.correlated import estimate
+from analytic.from_clamp.noise import DOUBLE_SIDED_95, MEDIAN_OF_NORMAL, known_to
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.provenance import recorded_contours
 from compare.align.jumps import jumps
@@ -44,8 +45,8 @@ class Offset:
     uncertainty : float
         The true one lies within `value` +- `uncertainty` in 95 % of all cases [length]; 0 where
         the offset was given. From the residual of the fit and its correlation between stations, so
-        that a model's smooth deviation widens it; what of that deviation looks exactly like an
-        offset cannot be distinguished from one.
+        that a model's smooth deviation widens it, and from what a rig's zeros are known to; what
+        of that deviation looks exactly like an offset cannot be distinguished from one.
     unknown : str
         Why none was found, and `value` is 0; empty otherwise.
     """
@@ -109,8 +110,9 @@ def estimate_offset(
     All offsets that leave half of the contact in common are tried, the snap-off included. From the
     best one on, the sum of squares of the three readings' differences, each in units of its own
     scatter, is minimised (Huber's estimator) over the trusted stations that lie within one phase of
-    the reference, the last two before its snap-off left out. The variance is Newey and West's with
-    Andrews' lag window, the interval Kiefer and Vogelsang's, who account for the window's width.
+    the reference, the last two before its snap-off left out; then with a rig's zeros, and noise
+    that remembers (`estimate`). The interval is that one's or, if wider, as of a model that
+    differs, Kiefer and Vogelsang's with Newey and West's variance and Andrews' lag window.
     """
     length = reference.beam.length
     best, *others = offset_fits(reference, candidate, reference_phase, candidate_phase)
@@ -144,15 +146,19 @@ def offset_fits(
     for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
         if number < _FEWEST:
             raise NoOffsetError(f"{number} trusted stations of the {name} in contact")
-    seen = np.stack([candidate.values(n) / size for n, size in scales(reference).items()])
-    x = candidate.running_values
-    near: list[float] = []
-    for start in _scan(curve, x, seen, loaded, candidate.trusted):
-        plain = _fit(curve, x[loaded], seen[:, loaded], start, robust=False)
-        if plain is not None and not np.isclose(near, plain.value, 0, _ONE * curve.spacing).any():
-            near.append(plain.value)
-    tried = (_fit(curve, x[loaded], seen[:, loaded], value, robust=True) for value in near)
-    fits = [fit for fit in tried if fit is not None]
+    sizes = np.array([*scales(reference).values()])
+    seen = np.stack([candidate.values(n) for n in CLAMP_READINGS]) / sizes[:, None]
+    x, zeros = candidate.running_values, _zeros(reference, candidate) / sizes[:, None]
+    starts = _scan(curve, x, seen, loaded, candidate.trusted)
+    x, seen, zeros = x[loaded], seen[:, loaded], zeros[..., loaded]
+    plain = [_fit(curve, x, seen, start, robust=False) for start in starts]
+    # Again from where each leads: on a long way it leaves stations behind.
+    first = [_fit(curve, x, seen, start, robust=True) for start in _apart(curve, plain)]
+    fits = [
+        fit
+        for start in _apart(curve, first)
+        if (fit := _fit(curve, x, seen, start, robust=True, zeros=zeros)) is not None
+    ]
     if not fits:
         raise NoOffsetError(f"fewer than {_FEWEST} stations in a phase of the reference")
     return sorted(fits, key=lambda fit: fit.misfit)
@@ -243,7 +249,36 @@ def _scan(
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
 
 
-def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, *, robust: bool) -> OffsetFit | None:
+def _zeros(reference: Readings, candidate: Readings) -> Floats:
+    """What the zeros may be off, of both: all along, along a line, and bent, (3, 3, stations)."""
+    x = candidate.running_values
+    along = 2 * (x - x.min()) / np.ptp(x) - 1
+    known = [
+        np.hypot(*(known_to(name, sweep) for sweep in (reference, candidate)))
+        for name in ("zero_uncertainty", "zero_uncertainty", "bend_uncertainty")
+    ]
+    shapes = np.array([along**0, along, 1 - along**2])
+    return np.asarray(np.array(known)[..., None] * shapes[:, None])
+
+
+def _apart(curve: _Curve, fits: list[OffsetFit | None]) -> list[float]:
+    """Where fits lead, each place once."""
+    near: list[float] = []
+    for fit in fits:
+        if fit is not None and not np.isclose(near, fit.value, 0, _ONE * curve.spacing).any():
+            near.append(fit.value)
+    return near
+
+
+def _fit(
+    curve: _Curve,
+    x: Floats,
+    seen: Floats,
+    start: float,
+    *,
+    robust: bool,
+    zeros: Floats | None = None,
+) -> OffsetFit | None:
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
@@ -273,7 +308,15 @@ def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, *, robust: bool) 
         if abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
     misfit = float(np.sqrt(np.mean((clipped * scatter) ** 2)))
-    return OffsetFit(value, _half_width(score, information), misfit)
+    width = _half_width(score, information)
+    if zeros is None:
+        return OffsetFit(value, width, misfit)
+    each = np.einsum("krn,rc->nckr", zeros[..., inside] / scatter, np.eye(len(scatter)))
+    off = each.reshape(*clipped.T.shape, -1)
+    off = off[..., off.any(axis=(0, 1))]
+    found = estimate(clipped.T, (-slope / scatter).T[..., None], off, np.ones(off.shape[-1]))
+    width = max(width, DOUBLE_SIDED_95 * float(np.sqrt(found.covariance[0, 0])))
+    return OffsetFit(value + float(found.numbers[0]), width, misfit)
 
 
 def _half_width(score: Floats, information: float) -> float:

@@ -63,10 +63,9 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     if cause is None or cause.startswith("noise"):
         ended = _ended(found, limits) if _agrees(error, limits, noise, jumps) else None
         cause = "; ".join(filter(None, (ended, cause))) or None
-    if notes:
-        notes.append(f"beside that {cause or 'the readings disagree, and do not show why'}")
-        return "; ".join(notes)
-    return cause
+    if notes and cause is None:
+        return "; ".join([*notes, "beside that the readings disagree, and do not show why"])
+    return "; beside that ".join(filter(None, (cause, "; ".join(notes)))) or None
 
 
 def _untouched(found: Measurement) -> str | None:

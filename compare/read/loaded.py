@@ -13,7 +13,7 @@ _STEEP = 0.5  # of the largest reading over the pass: a zero drifts less steeply
 _EXACT = 1e-4  # of the largest reading; no noise is taken to be less
 _CLEAR = 20.0  # of chi square by which a rise explains more than a drift
 _ONSET = 4.0  # of it: within that, 95 %, a rise may begin earlier
-_AS_STEEP = 0.4  # of the slope behind the stretch: noise that remembers does not go on
+_AS_STEEP = 0.4, 3.0  # times the slope behind the stretch: noise that remembers does not go on
 _ALONG = 0.8  # cosine between both slopes: one contact loads the readings in one ratio
 _ON = 2.0  # times what the stretch rises is reached at three times its length
 
@@ -58,7 +58,7 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     parts = np.array_split(np.vstack([way[here], rows[:, here]]), min(_MOST, here.sum()), axis=1)
     x, *others = np.transpose([part.mean(axis=1) for part in parts])
     y = np.array(others)
-    least = _EXACT**2 + np.square([[rounding(row)] for row in rows])
+    exact = _EXACT**2 + np.square([[rounding(row)] for row in rows])
     drift = np.clip(_fitted(x[None], y)[0], -steepest, steepest)
     free = np.var(y - drift * x, axis=1, keepdims=True)
     places = np.unique(x)[:-3]
@@ -66,14 +66,14 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     slopes, left = _fitted(ways, y)
     of_step = _fitted(np.sign(ways), y)[1]  # of a zero that the sensor has from there on
     gain, by_step = (
-        len(x) * np.log((free + least) / (z + least)).sum(axis=0) for z in (left, of_step)
+        len(x) * np.log((free + exact) / (z + exact)).sum(axis=0) for z in (left, of_step)
     )
     best = int(np.argmax(gain))
     inside, on = slopes[:, best], _fitted(way[None, behind], rows[:, behind])[0][:, 0]
     along = float(inside @ on)
-    goes_on = along > _AS_STEEP * float(on @ on) and along**2 > float(
-        _ALONG**2 * (inside @ inside) * (on @ on)
-    )
+    least, most = (times * float(on @ on) for times in _AS_STEEP)
+    as_one = along**2 > float(_ALONG**2 * (inside @ inside) * (on @ on))
+    goes_on = least < along < most and as_one
     level = y[:, x <= places[best]].mean(axis=1, keepdims=True)
     rise = inside @ inside * (length - places[best])
     reached = np.max(inside @ (rows[:, further] - level))

@@ -119,7 +119,8 @@ def check_channels(values: Floats, name: str) -> None:
         for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
             if end > begin:
                 some = others[:, begin : end + 1]
-                moved = (np.nanmax(some, axis=1) - np.nanmin(some, axis=1)) / sizes
+                moved = np.nanmax(some, axis=1) - np.nanmin(some, axis=1)
+                np.divide(moved, sizes, out=moved, where=sizes > 0)
                 here = float(np.nanmax(moved, initial=0.0)), begin, end
                 still[row[begin]] = max(here, still.get(row[begin], here))
         (usual, *_), (most, begin, end) = sorted(still.values())[-2:]

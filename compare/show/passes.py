@@ -76,6 +76,10 @@ def repeats_summary(found: Repeats) -> Iterator[Block]:
         ],
     )
     yield Text(f"foot_x: {consistency_line(found.shifts, found.names)}")
+    if found.others:
+        yield Text(
+            f"not in their mean: {', '.join(found.others)}, as of another object or vibrissa"
+        )
     if found.left_out > _UNLIKE:
         yield Text(
             f"in {found.left_out:.0%} of the contact passes differ by far more than that, most of "

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analytic import (
@@ -13,11 +14,13 @@ from analytic import (
     Sweep,
     circle,
     named_case,
+    relative_noise,
     solve_sweep,
 )
 from compare import Offset, classify, compare, separate_lag
 from compare.align.offset import estimate_offset, without_offset
 from compare.sense.noise import with_noise
+from tests.analytic.noisy import noisy
 from tests.conftest import exact_sweep, simulated_sweep
 
 PLANTED = (0.0, 0.013, -0.013, 0.1, -0.1)
@@ -209,3 +212,23 @@ def test_the_last_two_stations_before_the_snap_off_do_not_count():
         table.loc[rows, list(CLAMP_READINGS)] *= 4 / 3
         changed, calm = found(exact, replace(noisy, table=table)), found(exact, noisy)
         assert (changed.value == pytest.approx(calm.value, rel=1e-9)) == same
+
+
+def test_an_interval_knows_noise_that_remembers_and_a_rigs_zeros():
+    """Both look like an offset in part: the error was five times what was said."""
+    case = Case(profile=circle(0.3, (0.12, 0.68)))
+    first, last = case.foot_x[[0, -1]]
+    exact = solve_sweep(replace(case, sweep=Sweep(150, first + 0.1, last - 0.1)))
+    noise, along, over = relative_noise(exact, 3e-3), np.linspace(-1, 1, 150), []
+    zeros = {"zero_uncertainty": noise, "bend_uncertainty": noise}
+    for seed in range(30):
+        seen = noisy(exact, noise, seed, memory=0.9)
+        columns = {"foot_x": seen.values("foot_x")}
+        for name, draw in zip(
+            CLAMP_READINGS, np.random.default_rng(seed).standard_normal((3, 3)), strict=True
+        ):
+            off = draw @ [(1 - along) / 2, (1 + along) / 2, 1 - along**2]
+            columns[name] = seen.values(name) + noise[name] * off
+        offset = found(exact, Readings(pd.DataFrame(columns), exact.beam, "rig", zeros))
+        over.append(1.96 * offset.value / offset.uncertainty)
+    assert 0.6 < np.sqrt(np.mean(np.square(over))) < 1.2

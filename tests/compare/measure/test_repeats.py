@@ -57,3 +57,35 @@ def test_a_pass_that_is_unlike_the_others_is_named():
     assert (found.farthest, found.left_out > 0.05) == (4, True)
     said = " ".join(str(getattr(one, "said", "")) for one in repeats_summary(found))
     assert f"most of all {found.names[4]}: left out of their mean" in said
+
+
+def lacking(one, begin, rows):
+    """The pass without some rows."""
+    table = one.table.drop(index=range(begin, begin + rows)).reset_index(drop=True)
+    return Readings(table, one.beam)
+
+
+def test_rows_that_some_passes_lack_are_no_gap_of_the_mean():
+    """Each lost 32 of 200 somewhere else; rows of the mean were not there."""
+    exact, several = exact_sweep("catenary"), passes("catenary", 1e-3, np.random.default_rng(4))
+    found = repeats([lacking(one, 20 + 22 * i, 32) for i, one in enumerate(several)])
+    compared = compare(exact, found.mean, noise="auto")
+    assert not compared.records["candidate"].holes
+    assert compared.agrees, compared
+    all_lack = [lacking(one, 90, 32) for one in passes("catenary", 1e-3, np.random.default_rng(4))]
+    assert compare(exact, repeats(all_lack).mean, noise="auto").records["candidate"].holes
+
+
+def test_a_pass_of_another_object_is_not_in_the_mean():
+    """It made noise of 8e-2, beside which anything agrees."""
+    exact, rng = exact_sweep("catenary"), np.random.default_rng(5)
+    several, other = [*passes("catenary", 3e-3, rng)], next(passes("parabola", 3e-3, rng))
+    foot_x = several[0].values("foot_x")
+    rows = {n: np.interp(-foot_x, -other.values("foot_x"), other.values(n)) for n in CLAMP_READINGS}
+    another = Readings(several[0].table.assign(**rows), exact.beam, "another")
+    found = repeats([*several, another])
+    assert found.others == ("another",)
+    assert "not in their mean: another" in " ".join(
+        str(getattr(one, "said", "")) for one in repeats_summary(found)
+    )
+    assert max(compare(exact, found.mean, noise="auto").noise.level.values()) < 5e-3

@@ -7,6 +7,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, Case, InputError, Sweep, circle, solve_sweep
 from analytic.problem.beam import Beam
+from compare.read.loaded import loaded_from
 from compare.read.nonsense import check_free
 
 STATED, ROWS = 5e-3, 500
@@ -106,3 +107,14 @@ def test_half_a_stretch_is_found_and_what_to_state_instead_is_free(kind):
 @pytest.mark.parametrize("free", [0.5e-3, 2.5e-3, 4.8e-3])
 def test_where_a_contact_ends_at_once_it_is_seen_too(free):
     assert len(refusals("white", 6e-3, behind=free, which="free_after")) == 10
+
+
+@pytest.mark.parametrize(("times", "refused"), [(1.0, True), (5.0, False)])
+def test_noise_that_rises_faster_than_what_is_behind_is_no_load(times, refused):
+    """At the end of the stretch by chance in the ratio of the readings; one pass refused all."""
+    rng, way = np.random.default_rng(0), np.linspace(0.0, 3.0, 1500)
+    slopes = np.array([[-1.0], [0.1], [1.2]])
+    contact = slopes * np.maximum(way - (0.7 if refused else 1.45), 0.0)
+    bump = times * 0.5 * slopes * np.where(way < 1, np.maximum(way - 0.94, 0.0), 0.0)
+    read = contact + bump * (not refused) + 0.01 * rng.standard_normal((3, 1500))
+    assert (loaded_from(way, read, way <= 1) is not None) == refused

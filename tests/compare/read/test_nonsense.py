@@ -235,3 +235,8 @@ def test_what_a_table_is_not_is_said(tmp_path):
     files[0].write_bytes(b"PK\x03\x04" + bytes(range(256)))
     with pytest.raises(InputError, match=r"a workbook.*CSV"):
         look_at_passes(files, described)
+
+
+def test_channels_of_zeros_are_named_without_a_warning(tmp_path):
+    files, described = rig(tmp_path, lambda values: values * [[1.0], [0.0], [0.0], [0.0]])
+    assert "touches no object" in str(look_at_passes(files, described)[0].fault)
