@@ -105,6 +105,18 @@ def test_of_two_that_fit_alike_both_are_named_and_of_three_none():
     assert best_alone([Explanation("a", 0.2), Explanation("c", 0.5)], weigh) == (None, None)
 
 
+@pytest.mark.parametrize("rows", [2, 5])
+def test_readings_that_are_held_are_no_foot_that_jitters(rows):
+    """Every second reading anew was "jitter of foot_x by 1.5e-02 L"."""
+    exact = solve_sweep(named_case("catenary"))
+    held = {n: np.repeat(exact.values(n)[::rows], rows)[: len(exact.table)] for n in CLAMP_READINGS}
+    seen = Readings(exact.table[list(SENSED)].assign(**held), exact.beam, "held")
+    assert compare(exact, seen).likely.startswith(f"readings are held: {1 - 1 / rows:.0%} of those")
+    off = {n: 1.05 * x for n, x in held.items()}
+    seen = Readings(exact.table[list(SENSED)].assign(**off), exact.beam, "held, too stiff")
+    assert "held" not in (compare(exact, seen).likely or "")
+
+
 @pytest.mark.parametrize(("jumps", "noise"), [(0.75, True), (0.3, False)])
 def test_half_of_the_square_has_to_jump_to_be_noise(jumps, noise):
     """Beside a slow wave that is no other cause."""
