@@ -92,8 +92,8 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
     bend = way * np.array(slopes) - drift
     of_bend = np.hypot(abs(way) * np.array(slope_uncertain), np.hypot(*uncertain))
     known, none = np.max(uncertain, axis=0), np.zeros_like(drift)
-    memory, blocks = np.array(remembered), np.array(most)
-    return Zero(means[0], drift, known, line, share, bend, of_bend, memory, blocks, none)
+    more = np.array(remembered), np.array(most)
+    return Zero(means[0], drift, known, line, share, bend, of_bend, *more, none)
 
 
 def _slope(x: Floats, values: Floats, levels: Floats) -> tuple[Floats, Floats, Floats]:
@@ -121,7 +121,7 @@ def bent(zeros: Sequence[Zero]) -> list[Bent]:
     """What the drift of all passes of a rig has besides lines."""
     bends = np.array([one.bend for one in zeros])
     # Three degrees of freedom of a stretch are few: those of all passes say how noise remembers.
-    memory, most = (np.mean(x, axis=(0, 1)) for x in zip(*((z.memory, z.most) for z in zeros)))
+    memory, most = np.mean([(one.memory, one.most) for one in zeros], axis=(0, 2))
     memory = np.maximum(memory, memory.mean())  # some passes of one reading say little of it
     # Noise that remembers from one block to the next makes them alike: they show less of it. So far
     # as here slopes of AR(0.5) to AR(0.97) scatter, to 10 %.
