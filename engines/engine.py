@@ -1,4 +1,4 @@
-"""What an engine is: a name, what it needs, what it computes, and a sweep."""
+"""What an engine is: a sweep, and what it says of itself."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
@@ -20,17 +20,11 @@ differs by from MuJoCo is implementation. An ``other model`` has a discretisatio
 class Engine(Protocol):
     """What can sweep a case; found by `engines.find_engine`.
 
-    It never sees the exact solution: `analytic.problem` states the case, and that is all.
+    It never sees the exact solution: `analytic.problem` states the case, and that is all. It may
+    say more of itself: ``role``, one of `Role`, ``"other model"`` by default; ``requires``, the
+    distribution that it needs, as pip writes it (``"drake>=1.40,<2"``); ``tuned``, what was set
+    for it, why and by whom, for a fair comparison.
     """
-
-    name: str
-    """What ``--engine`` calls it."""
-    role: Role
-    """What its difference from MuJoCo says."""
-    requires: str
-    """The distribution that it needs, as pip writes it: ``"drake>=1.40,<2"``."""
-    tuned: str
-    """What was set for it, why, and by whom: for a fair comparison."""
 
     def sweep(
         self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None

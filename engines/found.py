@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from typing import get_args
+from inspect import signature
+from typing import Any, Literal, get_args
 
 from packaging.requirements import InvalidRequirement, Requirement
 
@@ -27,12 +28,18 @@ class Found:
         if that is not installed.
     trouble : str or None
         Why it cannot be used, and what to do; None if it can.
+    role : str
+        What its difference from MuJoCo says; empty if there is no engine.
+    tuned : str
+        What was set for it, as it says itself; empty if it does not.
     """
 
     name: str
     engine: Engine | None
     version: str | None
     trouble: str | None
+    role: Role | Literal[""] = ""
+    tuned: str = ""
 
 
 def list_engines() -> list[Found]:
@@ -77,25 +84,37 @@ def _found(name: str, target: str) -> Found:
     module, _, attribute = target.partition(":")
     try:
         engine: Engine = getattr(import_module(module), attribute)
-        Requirement(engine.requires)
-        _check(engine)
+        role, requires, tuned = _said(engine)
     except (Exception, SystemExit) as error:  # whatever another's module does when imported
         what = " ".join(f"{type(error).__name__}: {error}".split())
-        if isinstance(error, InvalidRequirement):
-            what = f"its requirement cannot be read: {what}"
         return Found(name, None, None, f"{target} cannot be loaded ({what})")
-    there, trouble = installed(engine.requires)
-    return Found(name, engine, there and (own_version(name) or there), trouble)
+    own = own_version(name)
+    there, trouble = installed(requires) if requires else (own, None)
+    return Found(name, engine, there and (own or there), trouble, role, tuned)
 
 
-def _check(engine: Engine) -> None:
-    """Raise if it lacks what an engine is asked for, so that only itself is lost by that."""
-    if engine.role not in get_args(Role):
-        raise ValueError(f"role is {engine.role!r}, not one of {', '.join(get_args(Role))}")
-    if not callable(engine.sweep):
-        raise TypeError("sweep is no function")
-    if not isinstance(engine.tuned, str):
-        raise TypeError("tuned is no text")
+def _said(engine: Any) -> tuple[Role, str, str]:  # noqa: ANN401  # whatever is offered
+    """What an engine says of itself; raise if it is none, so that only itself is lost by that."""
+    if isinstance(engine, type):
+        raise TypeError(f"an engine is an object, as {engine.__name__}(), and no class")
+    if not callable(getattr(engine, "sweep", None)):
+        raise TypeError(f"{type(engine).__name__} has no method sweep(case, settings, advance)")
+    for given in ("case, settings", "case, settings, advance"):
+        try:
+            signature(engine.sweep).bind(*given.split(", "))
+        except TypeError as error:
+            raise TypeError(f"sweep({given}) cannot be called: {error}") from None
+    role: Role = getattr(engine, "role", "other model")
+    requires, tuned = getattr(engine, "requires", ""), getattr(engine, "tuned", "")
+    if role not in get_args(Role):
+        raise ValueError(f"role is {role!r}, not one of {', '.join(get_args(Role))}")
+    if not isinstance(tuned, str):
+        raise TypeError(f"tuned is {tuned!r}, no text")
+    try:
+        Requirement(requires or "any")
+    except (InvalidRequirement, TypeError) as error:
+        raise ValueError(f"requires is {requires!r}, no requirement of pip's: {error}") from None
+    return role, requires, tuned
 
 
 def installed(requires: str) -> tuple[str | None, str | None]:

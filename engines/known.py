@@ -41,7 +41,7 @@ def known_engines() -> dict[str, str]:
 
 def own_version(name: str) -> str | None:
     """Of the distribution that offers an engine by an entry point."""
-    offered = (point.dist for point in _offered() if point.name == name)
+    offered = (point.dist for point in _offered() if point.name == name not in _SHIPPED)
     return next((dist.version for dist in offered if dist is not None), None)
 
 

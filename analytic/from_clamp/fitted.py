@@ -9,6 +9,8 @@ from analytic.from_clamp.correlated import NoiseFound
 from analytic.problem.errors import InputError, unknown
 from analytic.problem.shown import Shown
 
+_AS_NOISE = 1.2  # times the noise; less does not show a wrong object
+
 Kind = TypeVar("Kind", bound="Fitted")
 
 
@@ -43,6 +45,10 @@ def check_family(family: str, known: Sequence[str]) -> None:
         raise unknown("family", family, (*known, "auto"))
 
 
+class NoFamilyError(InputError):
+    """No family explains the readings, which may be right for all else."""
+
+
 def likeliest(
     family: str, known: Sequence[str], fit: Callable[[str], Kind], otherwise: str
 ) -> Kind:
@@ -63,10 +69,12 @@ def likeliest(
         best = ""
         if found:
             least = min(one.misfit for one in found)
-            best = f", what the best leaves is no noise ({least:.3g} times its size)"
+            best = f", the best leaves {least:.3g} times the noise"
+            if least < _AS_NOISE:
+                best = ", what the best leaves is too much alike along the sweep for noise"
         why = f"likely {otherwise}"
         if refused:
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
-        raise InputError("family", f"none of them{best}", "one that explains the readings", why)
+        raise NoFamilyError("family", f"none of them{best}", "one that explains the readings", why)
     rivals = {one.family: (one.bic, one.explains) for one in found}
     return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)

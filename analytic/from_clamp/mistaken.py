@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -13,21 +14,22 @@ from analytic.problem.readings import Readings
 _LOOKED_AT = 200  # stations; more say nothing new
 _EXPLAINS = 0.95  # of the stations: a few lie between two phases, or are spikes
 _UNITS = (1e3, 1e6, 9.80665)  # by which units are mistaken: milli, micro, kgf and N
-_FORCES, _MOMENT = CLAMP_READINGS[:2], CLAMP_READINGS[2:]
+_FORCES = CLAMP_READINGS[:2]
 
 
 @dataclass(frozen=True)
 class _Mistake:
-    """What is said of it, and what undoes it: factors of the readings, after forces are swapped."""
+    """What is said of it, and what undoes it: factors of the readings, after two are swapped."""
 
-    said: str
+    of: str
+    by: str = ""
     factors: dict[str, float] = field(default_factory=dict)
-    swapped: bool = False
+    swapped: tuple[str, ...] = ()
+    explains_much: bool = False  # so that it is named only if nothing else explains the readings
 
     def undone(self, readings: Readings) -> Readings:
         source = dict(zip(CLAMP_READINGS, CLAMP_READINGS, strict=True))
-        if self.swapped:
-            source |= zip(_FORCES, reversed(_FORCES), strict=True)
+        source |= zip(self.swapped, reversed(self.swapped), strict=True)
         right = {n: self.factors.get(n, 1.0) * readings.values(source[n]) for n in CLAMP_READINGS}
         return replace(readings, table=readings.table.assign(**right))
 
@@ -38,31 +40,37 @@ def likely_mistakes(readings: Readings, counted: Booleans) -> list[str]:
     if len(thin) < 2 or not counted[thin].any():
         return []
     some = replace(readings, table=readings.table.iloc[thin].reset_index(drop=True))
-    return [
-        one.said
-        for one in _mistakes()
-        if judge_phases(one.undone(some)).explained[counted[thin]].mean() >= _EXPLAINS
-    ]
+    found: dict[str, _Mistake] = {}
+    for one in _mistakes():
+        if one.explains_much and found:
+            continue
+        if judge_phases(one.undone(some)).explained[counted[thin]].mean() >= _EXPLAINS:
+            found.setdefault(one.of, one)  # of two sizes of a unit the one that is more common
+    return [f"{one.of}{one.by}" for one in found.values()]
 
 
 def _mistakes() -> Iterator[_Mistake]:
     for name in ("moment_z", "force_x", "force_y"):
-        yield _Mistake(f"the sign of {name}", {name: -1.0})
-    yield _Mistake(
-        "all signs (the vibrissa's action on the clamp)", dict.fromkeys(CLAMP_READINGS, -1.0)
-    )
-    yield _Mistake("force_x and force_y, swapped", swapped=True)
+        yield _Mistake(f"the sign of {name}", factors={name: -1.0})
+    every = dict.fromkeys(CLAMP_READINGS, -1.0)
+    yield _Mistake("all signs", " (the vibrissa's action on the clamp)", every)
+    for swapped in combinations(CLAMP_READINGS, 2):
+        yield _Mistake(f"{' and '.join(swapped)}, swapped", swapped=swapped)
     for name in _FORCES:
-        yield _Mistake("the sensor's axes, turned by 90 degrees", {name: -1.0}, swapped=True)
-    for names, called in (
-        (_FORCES, "both forces"),
-        (_MOMENT, "moment_z"),
-        (CLAMP_READINGS, "all three readings, or of the flexural rigidity"),
-    ):
-        for unit in _UNITS:
-            yield _Mistake(
-                f"the unit of {called} ({unit:.4g} times too large)", dict.fromkeys(names, 1 / unit)
-            )
-            yield _Mistake(
-                f"the unit of {called} ({unit:.4g} times too small)", dict.fromkeys(names, unit)
-            )
+        turned = "the sensor's axes, turned by 90 degrees"
+        yield _Mistake(turned, factors={name: -1.0}, swapped=_FORCES)
+    yield from _of_units(_FORCES, "both forces")
+    yield from _of_units(("moment_z",), "moment_z")
+    yield from _of_units(CLAMP_READINGS, "all three readings, or of the flexural rigidity")
+    for name in _FORCES:  # a force that is far too large is one of a tip, whatever the others are
+        yield from _of_units((name,), name, explains_much=True)
+
+
+def _of_units(
+    names: tuple[str, ...], called: str, explains_much: bool = False
+) -> Iterator[_Mistake]:
+    of = f"the unit of {called}"
+    for unit in _UNITS:
+        for factor, way in ((1 / unit, "large"), (unit, "small")):
+            by = f" ({unit:.4g} times too {way})"
+            yield _Mistake(of, by, dict.fromkeys(names, factor), explains_much=explains_much)

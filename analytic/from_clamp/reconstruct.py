@@ -31,6 +31,7 @@ from analytic.solver.elastica import tangent_span
 
 _LARGE = 0.99  # quantile of the forces that is called the largest
 _MANY = 0.2  # of the stations; of good readings with 3 % of noise up to an eighth have no contact
+LIKELY = "likely"  # before what a mistake would explain
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
 
@@ -148,7 +149,7 @@ def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
 
 def _likely(readings: Readings, loaded: Booleans) -> str:
     likely = likely_mistakes(readings, loaded)
-    return f"; likely {' or '.join(dict.fromkeys(likely))}" if likely else ""
+    return f"; {LIKELY} {' or '.join(likely)}" if likely else ""
 
 
 def scatter_of_contacts(passes: Sequence[Readings], found: Sequence[pd.DataFrame]) -> float | None:

@@ -54,6 +54,7 @@ SCHEMA = {
     **dict.fromkeys(
         ("contact_angle", "second_contact_angle", "clamp_angle"), Column("angle", odd=True)
     ),
+    "tip_angle": Column("angle"),  # a mirror takes it from pi
     **dict.fromkeys(("contact_arc_length", "contact_y"), Column("length")),
     **dict.fromkeys(("penetration", "out_of_plane"), Column("length")),
     **dict.fromkeys(("second_contact_arc_length", "second_contact_y"), Column("length")),

@@ -294,7 +294,7 @@ class Readings(OfVibrissa, SweepTable):
             raise InputError(f"readings file {path}", what, allowed, remedy)
         with usable(path):
             beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
-            source = metadata.get("source", f"measured, {path.name}")
+            source = metadata.get("source", path.name)
             return cls.of(content.table, beam, source, metadata.get("provenance"), content.place)
 
 

@@ -1,6 +1,7 @@
 """What may stand in the table of one sweep."""
 
 import difflib
+import re
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -15,9 +16,12 @@ from analytic.problem.columns import CONTACT, ODD, SENSED, WORDS
 from analytic.problem.errors import InputError, Place, row_number, unknown
 
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}([.,' \u202f]\d{3})+([.,]\d*)?")
 
 
-def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -> Floats:
+def as_numbers(
+    column: "pd.Series[Any]", name: str, place: Place = row_number, remedy: str = _TEXT_FIX
+) -> Floats:
     """A column of readings as numbers, NaN where a cell is empty."""
     types = pd.api.types
     kind = column.dtype
@@ -26,13 +30,13 @@ def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -
     if types.is_float_dtype(kind) or types.is_integer_dtype(kind):
         numbers = column.to_numpy(dtype=float, na_value=np.nan)
     elif types.is_object_dtype(kind) or types.is_string_dtype(kind):
-        numbers = _parsed(column, name, place)
+        numbers = _parsed(column, name, place, remedy)
     else:
         raise _wrong_type(name, kind)
     infinite = np.isinf(numbers)
     if infinite.any():
         row = int(np.argmax(infinite))
-        raise InputError(f"column {name}, {place(row)},", numbers[row], "finite", _TEXT_FIX)
+        raise InputError(f"column {name}, {place(row)},", numbers[row], "finite", remedy)
     return np.asarray(numbers, dtype=float)
 
 
@@ -109,13 +113,15 @@ def _turned_over(columns: Any) -> dict[str, Any]:  # noqa: ANN401  # a table or 
     return changed
 
 
-def _parsed(column: "pd.Series[Any]", name: str, place: Place) -> Floats:
+def _parsed(column: "pd.Series[Any]", name: str, place: Place, remedy: str) -> Floats:
     numbers = np.array([_number(cell) for cell in column], dtype=float)
     wrong = np.isnan(numbers) & column.notna().to_numpy()
     if wrong.any():
         row = int(np.argmax(wrong))
-        cell = f"{column.iloc[row]!r}"[:40]
-        raise InputError(f"column {name}, {place(row)},", cell, "a number", _TEXT_FIX)
+        cell = column.iloc[row]
+        if isinstance(cell, str) and _THOUSANDS.fullmatch(cell.strip()):
+            remedy = "export numbers without a separator of thousands"
+        raise InputError(f"column {name}, {place(row)},", f"{cell!r}"[:40], "a number", remedy)
     return numbers
 
 

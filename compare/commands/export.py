@@ -66,8 +66,10 @@ def export(
         from compare.simulate.prescription import LADDER, prescribe
         from mujoco_models.beams.available import require
         from mujoco_models.export.sweep import beside
-        from mujoco_models.export.urdf import LACKING, as_urdf
+        from mujoco_models.export.urdf import LACKING, as_urdf, require_chain
         from mujoco_models.motion import Motion
+    if (bare := urdf or out.suffix == ".urdf") and obstacle:
+        raise InputError("--obstacle", "given", "for MJCF alone", "URDF holds the whisker only")
     job = load_case(case)
     if not isinstance(job, Job):
         remedy = "put one in its place: the whisker is chosen by a sweep past it"
@@ -76,6 +78,8 @@ def export(
         raise InputError("CASE", case, "one without a [model]", "that is a model already")
     kind = beam or job.settings.beam
     require(kind)
+    if bare:
+        require_chain(replace(job.settings, beam=kind))
     made, solid = _of_material(job.case.beam, material)
     period = _period(case, made, solid, density)
     motion = job.motion or Motion(speed=_SPEED)
@@ -86,7 +90,7 @@ def export(
             found = prescribe(wanted, kind, motion, period, error, advance)
         whisker = replace(found.whisker, case=wanted)
         said = _lines(found, error, made.si)
-        if urdf or out.suffix == ".urdf":
+        if bare:
             text, said = as_urdf(whisker), [*said, LACKING]
         else:
             text = (beside(whisker) if obstacle else whisker).xml(*said)

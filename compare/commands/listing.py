@@ -53,8 +53,7 @@ def _engines() -> Iterator[str]:
     width = 2 + max(len(found.name) for found in engines)
     yield f"{'exact':{width}}{'reference':14}the closed form"
     for found in engines:
-        role = "" if found.engine is None else found.engine.role
-        yield f"{found.name:{width}}{role:14}{found.trouble or found.version or ''}"
+        yield f"{found.name:{width}}{found.role:14}{found.trouble or found.version or ''}"
 
 
 def _methods() -> Iterator[str]:

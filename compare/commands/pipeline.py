@@ -195,7 +195,7 @@ def _rows(outcomes: Sequence[Outcome]) -> list[EngineOutcome]:
     known = {found.name: found for found in list_engines()}
     rows = []
     for one in outcomes:
-        found = known[one.engine]
-        role, tuned = ("", "") if found.engine is None else (found.engine.role, found.engine.tuned)
-        rows.append(EngineOutcome(one.engine, role, found.version or "none", tuned, one.trouble))
+        its = known[one.engine]
+        version = its.version or "none"
+        rows.append(EngineOutcome(its.name, its.role, version, its.tuned, one.trouble))
     return rows

@@ -17,7 +17,7 @@ from analytic import (
     relative_noise,
     require_beam,
 )
-from analytic.from_clamp.fitted import check_family
+from analytic.from_clamp.fitted import NoFamilyError, check_family
 from analytic.from_clamp.passes import as_passes
 from analytic.from_clamp.reconstruct import doubt, scatter_of_contacts
 from analytic.problem.support import check_support
@@ -121,8 +121,12 @@ def in_the_plane(
     contacts = {name: [reconstruct(one, level, method=name) for one in passes] for name in methods}
     for found, one in zip(contacts.get("elastica", ()), passes, strict=False):
         require_beam(found, one)
+    fitted = none = None
     with waiting("fitting"):
-        fitted = None if family is None else fit_object(passes, family, level)
+        try:
+            fitted = None if family is None else fit_object(passes, family, level)
+        except NoFamilyError as error:
+            none = error
     # The fit takes 60 MB, and what draws 50: it is loaded when the fit has gone.
     from compare.show.figures.geometry import reconstruction
 
@@ -151,8 +155,10 @@ def in_the_plane(
         if fitted is not None:
             terminal.show(*object_summary(fitted, passes[0].beam.si))
             terminal.keep(folder / "object.json", object_document(fitted))
+    if none is not None:
+        terminal.print_line(str(none))
     if fitted is None:
-        return True
+        return none is None
     return fitted.explains and (fitted.passes is None or fitted.passes.consistent)
 
 

@@ -43,6 +43,7 @@ _UNITS = {
     "clamp_compliance": " L/EI",
     "clamp_angle": " rad",
 }
+_OF_ITSELF = ("flexural_rigidity", "length", "radius", "tip_radius")  # others are of L
 _CONVINCING = 0.8  # fraction of the unexplained that a suspect must account for
 
 
@@ -50,8 +51,8 @@ _CONVINCING = 0.8  # fraction of the unexplained that a suspect must account for
 class Suspect:
     """A quantity of the physics that seems to differ between the two sweeps.
 
-    `change` is by how much in the candidate, relative to its value (``foot_x``: to the length L;
-    ``friction``: the coefficient itself; ``natural_curvature``: 1/L; ``clamp_compliance``, the
+    `change` is by how much in the candidate, relative to its value (of a place, as ``foot_x``: to
+    L; ``friction``: the coefficient itself; ``natural_curvature``: 1/L; ``clamp_compliance``, the
     clamp's rotation by its moment: L/EI; ``clamp_angle``: rad); `share` is how much of the
     unexplained disagreement's square it accounts for.
     """
@@ -64,7 +65,7 @@ class Suspect:
     def size(self) -> str:
         if self.name in _UNITS:
             return f"{self.change:+.2g}{_UNITS[self.name]}"
-        return f"{self.change:+.2%}"
+        return f"{self.change:+.2%}" + ("" if self.name in _OF_ITSELF else " of L")
 
 
 def suspects(

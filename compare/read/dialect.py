@@ -18,6 +18,7 @@ from compare.read.units import is_unit
 
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB
 _LOOKED_AT = 200  # lines that decide
+_ARCHIVES = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # what spreadsheets write, new and old
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "#n/a", "-"})
 _NO_UNIT = frozenset({"-", "--", "1", "%", "°", "°C"})  # of nothing that is sensed
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|[+-]?(inf|infinity)", re.IGNORECASE)
@@ -36,6 +37,9 @@ class Dialect(NamedTuple):
     def pointed(self, text: str) -> str:
         """A text whose numbers have a decimal point."""
         return text.translate(_COMMA_IS_POINT) if self.decimal == "," else text
+
+    def as_written(self, pointed: str) -> str:
+        return pointed if _NUMBER.fullmatch(pointed.strip()) else self.pointed(pointed)
 
     def weight(self, cell: str) -> int:
         """What a cell says for its line being a row of numbers."""
@@ -63,10 +67,13 @@ class RawTable(NamedTuple):
 def read_text_table(path: Path) -> RawTable:
     regular_file(path, "readings file", _LARGEST)
     try:
-        text = _decoded(path.read_bytes())
+        content = path.read_bytes()
     except OSError as error:
         remedy = f"check it ({error.strerror})"
         raise InputError("readings file", path, "readable", remedy) from error
+    if content.startswith(_ARCHIVES):
+        raise InputError(f"readings file {path}", "a workbook", "text", "export it as CSV")
+    text = _decoded(content)
     looked_at = list(islice(_filled(text), _LOOKED_AT))
     head = [line for _, line in looked_at]
     dialect = max(_DIALECTS, key=lambda one: _rows(one, head)[1])  # of equals the first
@@ -79,6 +86,11 @@ def read_text_table(path: Path) -> RawTable:
             "export it as CSV",
         )
     first, width = looked_at[begin][0], len(dialect.cells(head[begin]))
+    titles = dialect.cells(head[begin - 1]) if begin else []
+    if dialect.separator == "," and 2 * len(titles) == width:
+        what, allowed = f"{width} cells for {len(titles)} names", "one for each"
+        remedy = "its commas divide cells and decimals alike: export it with ';' or tabs between"
+        raise InputError(f"readings file {path}", what, allowed, remedy)
     units = _units(dialect, head[:begin], width)
     names = _names(dialect, head[: begin - bool(units)], width)
     rows = [(number, line) for number, line in _filled(text) if number >= first]
@@ -172,4 +184,8 @@ def _parsed(dialect: Dialect, rows: str, names: list[str], path: Path) -> pd.Dat
         raise InputError(
             f"readings file {path}", "unreadable", "a table of numbers", why
         ) from error
+    if dialect.decimal == ",":  # what is no number stays as it is written
+        for i, column in frame.items():
+            if pd.api.types.is_string_dtype(column.dtype):
+                frame[i] = column.map(dialect.as_written, na_action="ignore")
     return frame.set_axis(names, axis=1)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from analytic import CLAMP_READINGS, Direction, InputError
 from analytic.from_clamp.noise import scatter
@@ -20,6 +21,9 @@ _BACK = 0.02  # of the travel, in one step back
 _BESIDE = 3  # rows on either side of it
 _AHEAD = 0.02  # of the travel, in one step ahead across which ...
 _NEAR = 10  # rows on either side
+_BURST = 3  # rows in a spike, at most
+_LEAP = 3.0  # times what three rows before and three behind differ by
+_LEAST_LEAP = 0.01  # of the largest reading; less is no harm
 _SMOOTH = 0.25  # ... readings change by less than this part of what their slopes say
 
 
@@ -30,7 +34,7 @@ def check_free(
     travel = float(np.ptp(foot_x))
     if stretch >= travel:
         what = f"{stretch:g}, of a pass ({name}) of {travel:.4g}"
-        remedy = "the contact would count as zero: state a shorter stretch"
+        remedy = "state a shorter stretch, or check the unit and the gain of foot_x"
         raise InputError(f"passes.{which}", what, "shorter than the pass", remedy)
     order = slice(None, None, -1 if which == "free_after" else 1)
     way = np.abs(foot_x - foot_x[order][0])[order]
@@ -79,6 +83,25 @@ def check_units(values: Floats, stretches: Iterable[Booleans], name: str) -> Non
         what = f"a noise of {name} that changes {ratio[0]:.2g} times between them"
         remedy = "the file has two units, or the amplifier was switched: split it there"
         raise InputError("passes.free_before and free_after", what, "much the same", remedy)
+
+
+def spikes(values: Floats) -> Booleans:
+    """Rows, one to three in turn, at which a reading is far beyond those before and behind."""
+    found = np.zeros(values.shape[1], dtype=bool)
+    for row in values:
+        known = row[np.isfinite(row)]
+        if len(known) < _BURST + 2 * _BESIDE:
+            continue
+        least = max(_SIGMAS * scatter(known), _LEAST_LEAP * np.quantile(np.abs(known), 0.99))
+        for burst in range(1, _BURST + 1):
+            rows = sliding_window_view(row, burst + 2 * _BESIDE)
+            before, within, behind = np.split(rows, [_BESIDE, _BESIDE + burst], axis=1)
+            around = np.hstack([before, behind])
+            lowest, highest = around.min(axis=1), around.max(axis=1)
+            leap = np.maximum(within.min(axis=1) - highest, lowest - within.max(axis=1))
+            first = np.flatnonzero(leap > np.maximum(_LEAP * (highest - lowest), least))
+            found[(first[:, None] + _BESIDE + np.arange(burst)).ravel()] = True
+    return found
 
 
 def check_channels(values: Floats, name: str) -> None:

@@ -24,6 +24,7 @@ from compare.read.nonsense import (
     check_object,
     check_sizes,
     check_units,
+    spikes,
 )
 from compare.read.rig import cells, check_recorded, read_sweeps
 from compare.read.rig_file import Rig
@@ -31,6 +32,8 @@ from compare.read.units import DIMENSIONS, check_unit
 from compare.sense.record import Record, check_size, inspect_record
 
 _SHAPE = 0.25  # of a curve that is taken off: exp(-4 u) and sin(3 u) are so far from a cubic
+_WORKBOOKS = (".xlsx", ".xls", ".ods", ".mat", ".tdms", ".h5")  # may hold passes, too
+_NO_NUMBER = "fix the cell, or name it in rig.toml: missing = [...]"
 _MIDDLE = 2.0  # times the root mean square of a bend is at most what it has midway, if lopsided
 
 
@@ -91,7 +94,12 @@ def look_at_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
 def _files(source: Path) -> list[Path]:
     if not source.is_dir():
         return [source]
-    files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
+    there = sorted(path for path in source.iterdir() if path.is_file())
+    files = [path for path in there if path.suffix.lower() in TEXTS]
+    others = [path.name for path in there if path.suffix.lower() in _WORKBOOKS]
+    if files and others:
+        remedy = "export it as text, or move it elsewhere"
+        raise InputError("FILE", source / others[0], f"named *{', *'.join(TEXTS)}", remedy)
     if not files:
         allowed = f"a folder with files named *{', *'.join(TEXTS)}"
         raise InputError("FILE", source, allowed, "name another")
@@ -129,7 +137,7 @@ def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
             check_unit(said.unit, said.column, written, DIMENSIONS[name], f" of {path}")
         if not pd.api.types.is_numeric_dtype(column):
             column = column.mask(column.astype(str).str.strip().isin(rig.missing))
-        numbers = as_numbers(column, said.column, table.place)
+        numbers = as_numbers(column, said.column, table.place, _NO_NUMBER)
         zero = 0.0 if name in CLAMP_READINGS else said.zero
         found[name] = said.scale(name) * (numbers - zero)
     clock = rig.columns.time
@@ -166,6 +174,8 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     check_recorded(raw, name)
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
+    leaps = spikes(before)
+    before[:, leaps], dropped["spikes"] = np.nan, int(leaps.sum())
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
     zero = no_zero(before)
     provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}

@@ -137,8 +137,8 @@ def read_sweeps(
             remedy = 'write length = "50 mm" and the like'
             raise InputError(f"[beam] of {beam}", plain, allowed, remedy)
         units_used = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
-        provenance, source_ = {**units_used, **held}, f"measured, {called}"
-        sweeps = _sweeps(Readings.of(table, known or assumed, source_, provenance, raw.place))
+        provenance = {**units_used, **held}
+        sweeps = _sweeps(Readings.of(table, known or assumed, called, provenance, raw.place))
     return [(way, assumed_of(one) if one.beam is assumed else one) for way, one in sweeps]
 
 

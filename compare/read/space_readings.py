@@ -74,6 +74,4 @@ def read_space(
     upright = (0.0, 1.0, 0.0) if tangent is None else np.asarray(tangent)
     known = table[[*SENSED_IN_SPACE, *(name for name in _ALSO if name in table)]]
     provenance = {"units": used} if used else {}
-    return from_frame(
-        SpatialReadings(known, held, upright, f"measured, {path.name}", provenance), frame
-    )
+    return from_frame(SpatialReadings(known, held, upright, path.name, provenance), frame)

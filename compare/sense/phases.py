@@ -7,10 +7,13 @@ import pandas as pd
 
 from analytic import PHASES, Readings, reconstruct
 from analytic.from_clamp.phases import judge_phases
-from analytic.problem.arrays import Floats, Words
+from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.table import says
 
 _CATEGORIES = pd.CategoricalDtype([*PHASES])
+_STARTS = 0.05  # of the largest force, at most, of what the start of a drive excites
+_LAST = 3  # stations before a release, of which the largest force is that of the contact ...
+_ASTRAY = 0.25  # ... and the mean of a swing at most so much of it
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,6 +60,9 @@ class Classification:
 def classify(readings: Readings) -> Classification:
     """Decide each station's phase, as `analytic.reconstruct` does.
 
+    A sweep that records no events may ring before its contact and after the release, as a loop of
+    a simulator's steps does: such stations are free.
+
     Parameters
     ----------
     readings : Readings
@@ -78,7 +84,35 @@ def classify(readings: Readings) -> Classification:
     """
     judged = judge_phases(readings)
     phase = np.where(readings.trusted, judged.phase, "")
+    if "events" not in readings.provenance:
+        phase[_ringing(readings, phase, judged.explained)] = "free"
     return Classification(phase, *judged[1:], readings)
+
+
+def _ringing(readings: Readings, phase: Words, explained: Booleans) -> Booleans:
+    """Stations that seem to touch, but swing about zero: as the drive starts, and once released.
+
+    An object only pushes, and bends the clamp to one side. A swing pulls in its turn; its mean is
+    next to nothing, where that of a contact that chatters is the contact's.
+    """
+    touching = np.isin(phase, ("tip", "tangent"))
+    force = np.nan_to_num(np.stack([readings.values("force_x"), readings.values("force_y")]))
+    size = np.where(touching, np.hypot(*force), 0.0)
+    peak = int(np.argmax(size))
+    found = np.zeros_like(touching)
+    before = np.flatnonzero(phase[:peak] == "free")
+    if touching[0] and before.size and size[: before[-1]].max() <= _STARTS * size[peak]:
+        found[: before[-1]] = touching[: before[-1]]
+    moment = np.where(touching, readings.values("moment_z"), 0.0)
+    odd = touching & ~(explained & (moment * moment.sum() > 0))
+    for begin in (np.flatnonzero(odd[peak + 1 :]) + peak + 1).tolist():
+        first = max(begin - _LAST, 0)
+        last = force[:, first + int(np.argmax(size[first:begin]))]
+        along = last @ force[:, begin:] / (last @ last)
+        if along.mean() <= _ASTRAY and (along < 0)[touching[begin:]].any():
+            found[begin:] = touching[begin:]
+            break
+    return found
 
 
 def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:

@@ -61,8 +61,10 @@ def _parts_table(found: Parted) -> Table:
     for name, sizes in checks.items():
         rows.append((f"{name}, closed form alone", *map(short, sizes.values())))
     near = " (next to the snap-off, too)" if isinstance(found, Budget) else ""
+    alone = "; the closed form's are of each part alone, and need not be within it"
     return Table(
-        f"Root mean square and uncertainty over {found.stations} stations{near}, {_RMS}",
+        f"Root mean square over {found.stations} stations{near}, {_RMS}; ± is what unrest and "
+        f"extrapolation leave open of that step{alone if checks else ''}",
         ("part", *found.disagreement),
         rows,
         blamed=[i for i, name in enumerate(found.parts) if name == found.blame],

@@ -1,5 +1,6 @@
 """Numbers and names as people read them."""
 
+import math
 from typing import Any, Literal, TypeAlias
 
 from analytic import Beam, Readings
@@ -10,6 +11,7 @@ Kind: TypeAlias = Literal["length", "force", "moment"]
 _UNITS: dict[Kind, str] = {"length": "m", "force": "N", "moment": "N m"}
 _PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6}
 _SMALLEST = 0.1  # that is written without a smaller unit
+_DECIMALS = 5  # beyond them an uncertainty is a power of ten
 
 
 def short(x: float | None, unit: str = "") -> str:
@@ -53,8 +55,25 @@ def object_of(readings: Readings | SpatialReadings) -> str:
 
 def quantity(value: float, kind: Kind, beam: Beam) -> str:
     """A number with its unit, where that is known: in SI, with the prefix that suits it."""
+    size, unit = _unit(value, kind, beam)
+    return f"{value / size:.4g}{unit}"
+
+
+def uncertain(value: float, half: float, kind: Kind, beam: Beam) -> str:
+    """A number and its uncertainty in one unit, to two digits of the latter."""
+    size, unit = _unit(max(value, -value, half), kind, beam)
+    value, half = value / size, half / size
+    if not half:
+        return f"{value:.4g}{unit}"
+    decimals = max(0, 1 - math.floor(math.log10(half)))
+    if decimals > _DECIMALS:
+        return f"{place(value)} ± {short(half)}{unit}"
+    return f"{value:.{decimals}f} ± {half:.{decimals}f}{unit}"
+
+
+def _unit(value: float, kind: Kind, beam: Beam) -> tuple[float, str]:
     if not beam.si:
-        return f"{value:.4g}"
+        return 1.0, ""
     sizes = [(prefix, size) for prefix, size in _PREFIXES.items() if abs(value) >= _SMALLEST * size]
     prefix, size = sizes[0] if sizes and value else ("", 1.0)
-    return f"{value / size:.4g} {prefix}{_UNITS[kind]}"
+    return size, f" {prefix}{_UNITS[kind]}"

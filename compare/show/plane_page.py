@@ -23,7 +23,7 @@ from compare.show.document import (
 )
 from compare.show.figures import readings as drawn
 from compare.show.figures.geometry import geometry
-from compare.show.numbers import object_of, percent, place, quantity, sentence, short, words
+from compare.show.numbers import object_of, percent, sentence, short, uncertain, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
 from compare.show.verdict import (
     absent_transitions,
@@ -78,9 +78,10 @@ def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdi
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
     yield from common.sizes(comparison, worst_reading(comparison))
     apart, (size, unit) = comparison.snap_off.difference, comparison.reference.running_unit
-    shift = "not in both" if apart is None else short(apart / size, f" {unit}")
-    if apart is not None and comparison.snap_off.uncertainty:
-        shift += f" +- {short(comparison.snap_off.uncertainty / size)}"
+    unsure, shift = comparison.snap_off.uncertainty, "not in both"
+    if apart is not None:
+        half = f" ± {short(unsure / size)}" if unsure else ""
+        shift = f"{short(apart / size)}{half} {unit}"
     yield Tile("snap-off apart", shift, "candidate less reference")
     alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
     if alike is not None:
@@ -234,12 +235,9 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
 
 
 def _offset(comparison: Comparison) -> str:
-    """In L, and in the readings' own unit unless that is L; empty if there is none."""
+    """In the readings' own unit; empty if there is none."""
     beam, offset = comparison.reference.beam, comparison.offset
     if not (offset.value or offset.uncertainty):
         return "none was found" if offset.unknown else ""
-    value, unsure = place(offset.value / beam.length), short(offset.uncertainty / beam.length)
-    if beam == Beam():
-        return f"{value} ± {unsure} L"
-    own = " ± ".join(quantity(x, "length", beam) for x in (offset.value, offset.uncertainty))
-    return f"{value} ± {unsure} L ({own})"
+    found = uncertain(offset.value, offset.uncertainty, "length", beam)
+    return found if beam.si else f"{found} L" if beam == Beam() else f"{found}, L = {beam.length:g}"

@@ -118,9 +118,9 @@ def _causes(found: Comparison) -> Iterator[str]:
 def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Path]:
     """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
-    (figure,) = next(document.pictures()).figures.values()
+    drawn = error_against_time(found) if _timed(found) else differences(found)
     contents: dict[str, str | bytes] = {f"{called}.html": html(document)}
-    contents |= {f"{called}.json": as_json(found.to_dict()), f"{called}.png": png(figure)}
+    contents |= {f"{called}.json": as_json(found.to_dict()), f"{called}.png": png(drawn)}
     return write_all(folder, contents)
 
 
@@ -132,7 +132,7 @@ def side_by_side_document(found: SideBySide) -> Document:
         "squares over the stations in contact, relative to each reading's largest magnitude.",
         Verdict(
             found.agree,
-            f"{'All' if found.agree else 'Not all'} agree with {_named(reference)}.",
+            _tally(found),
             "" if found.split is None else found.split.sentence,
         ),
         sections(
@@ -141,6 +141,14 @@ def side_by_side_document(found: SideBySide) -> Document:
             ("fairness", "What was set for each engine, and by whom", _fairness(found)),
         ),
     )
+
+
+def _tally(found: SideBySide) -> str:
+    agree = sum(one.agrees for one in found.outcomes)
+    none = sum(one.trouble is not None for one in found.outcomes)
+    agrees = f"{agree} of {len(found.outcomes)} agree{'s' * (agree == 1)}"
+    no_readings = f", {none} gave no readings" if none else ""
+    return f"{agrees} with {_named(found.reference)}{no_readings}."
 
 
 def _named(reference: Readings) -> str:
@@ -169,9 +177,9 @@ def outcomes_table(
     found: Mapping[str, Sequence[EngineOutcome]], reference: str = "the closed form"
 ) -> Table:
     rows = {case: [_outcome(one) for one in outcomes] for case, outcomes in found.items()}
-    head = ("sweep", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
+    head = ("sweep", "", *CLAMP_READINGS, "snap-off apart / L", "ms a station")
     caption = f"Each against {reference}, relative rms"
-    return _by_case(caption, head, rows, [0, len(head) - 1])
+    return _by_case(caption, head, rows, [0, 1])
 
 
 def _outcome(one: EngineOutcome) -> tuple[str, ...]:
@@ -179,7 +187,7 @@ def _outcome(one: EngineOutcome) -> tuple[str, ...]:
     seconds = one.seconds_a_station
     time = "none" if seconds is None else f"{1e3 * seconds:.2g}"
     said = "no readings" if one.trouble else "agrees" if one.agrees else "disagrees"
-    return (one.label, *rms, short(one.snap_off_apart), time, said)
+    return (one.label, said, *rms, short(one.snap_off_apart), time)
 
 
 def reasons(found: Iterable[EngineOutcome]) -> Iterator[Items]:
@@ -211,18 +219,28 @@ def _by_case(
 
 def _sweeps(found: SideBySide) -> Iterator[Block]:
     yield from _each(found)
-    if any(one.role for one in found.outcomes):
+    if _timed(found):
         yield Picture(
             "time",
             {"Error against time a station, a mark an engine": partial(error_against_time, found)},
             "Error against time. Processor time of one process; an engine that is not tuned for "
             "this can be faster.",
+            "middle",
         )
     yield Picture(
         "apart",
-        {"Differences over the foot position": partial(differences, found)},
+        {
+            f"Differences of {name} over the foot position": partial(differences, found, name)
+            for name in CLAMP_READINGS
+        },
         "Differences from the reference over the foot position.",
+        "three",
     )
+
+
+def _timed(found: SideBySide) -> bool:
+    """Whether there is more than one engine, for one to be faster."""
+    return sum(bool(one.role and one.rms) for one in found.outcomes) > 1
 
 
 def _split(found: SideBySide) -> Iterator[Block]:
@@ -245,7 +263,7 @@ def _fairness(found: SideBySide) -> Iterator[Block]:
 
 
 def error_against_time(found: SideBySide) -> Figure:
-    figure = Figure(figsize=(7, 4.4), layout="constrained")
+    figure = Figure(figsize=(5.6, 4.0), layout="constrained")
     ax = figure.subplots()
     ax.set(xscale="log", yscale="log", ylabel="rms relative to the largest magnitude")
     ax.set_xlabel("processor time a station [ms], building the model included")
@@ -274,12 +292,13 @@ def error_against_time(found: SideBySide) -> Figure:
     return figure
 
 
-def differences(found: SideBySide) -> Figure:
-    """Draw how far the clamp readings are from the reference's, over the foot position."""
-    figure = Figure(figsize=(12, 4.2), layout="constrained")
-    axes = figure.subplots(1, 3, sharex=True)
+def differences(found: SideBySide, *names: str) -> Figure:
+    """Draw how far the readings, or some, are from the reference's, over the foot position."""
+    names = names or CLAMP_READINGS
+    figure = Figure(figsize=(4 * len(names), 4.2), layout="constrained")
+    axes = figure.subplots(1, len(names), sharex=True, squeeze=False)[0]
     first = next(iter(found.against.values()))
-    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+    for ax, name in zip(axes, names, strict=True):
         shade_reference(ax, first)
         for i, (candidate, one) in enumerate(found.against.items()):
             table = one.alignment.table

@@ -58,7 +58,7 @@ def _side_by_side(case: Case, settings: Settings, timeout: float) -> list[dict[s
     for found in sorted(there, key=lambda one: one.name != "mujoco"):
         outcome = sweep_apart(found.name, case, settings, timeout)
         row: dict[str, object] = {"case": case.name, "engine": f"{found.name} {found.version}"}
-        row |= {"model": found.engine.role if found.engine else "", "segments": settings.segments}
+        row |= {"model": found.role, "segments": settings.segments}
         if outcome.readings is not None:
             took = 1e3 * float(outcome.readings.provenance["seconds"]) / _STATIONS
             unit = took if found.name == "mujoco" else unit
@@ -66,7 +66,7 @@ def _side_by_side(case: Case, settings: Settings, timeout: float) -> list[dict[s
         if found.name == "mujoco":
             stock = compare(exact, simulate_motion(case, STOCK, settings)).disagreement
             row["default_error"] = max(stock[key].rms for key in CLAMP_READINGS)
-        row["settings"] = found.engine.tuned if found.engine else ""
+        row["settings"] = found.tuned
         rows.append({**row, "trouble": outcome.trouble})
         print(*rows[-1].values(), flush=True)
     return rows

@@ -99,7 +99,7 @@ def _signs(ax: Axes, x0: float) -> None:
         (x0 + 0.17, -0.06),
         arrowprops={**_ARROW, "connectionstyle": "arc3,rad=0.5"},
     )
-    ax.text(x0 + 0.22, -0.06, "moment_z", color=_FORCE)
+    ax.text(x0 + 0.2, 0.03, "moment_z", color=_FORCE, va="bottom")
     ax.text(x0 - 0.62, -0.22, "clamp on vibrissa, counted positive", color=_FORCE, fontsize=9)
 
 

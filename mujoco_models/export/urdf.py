@@ -9,6 +9,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.export.whisker import PREFIX, Whisker
+from mujoco_models.settings import Settings
 
 LACKING = (
     "URDF has no springs, sensors, contact parameters or time step: each joint's stiffness stands "
@@ -18,11 +19,14 @@ _LEAST = 1.1e-14  # what MuJoCo takes for a moment of inertia in URDF
 _ALONG = f"{np.pi / 2:.9g} 0 0"  # a cylinder's axis is z, a link's y
 
 
+def require_chain(settings: Settings) -> None:
+    if not settings.elsewhere:
+        allowed = "a chain in the plane on linear springs in URDF"
+        raise InputError("--beam", settings.beam, allowed, "or write MJCF")
+
+
 def as_urdf(whisker: Whisker) -> str:
     """The chain without its carriage."""
-    if not whisker.settings.elsewhere:
-        allowed = "a chain in the plane on linear springs in URDF"
-        raise InputError("--beam", whisker.settings.beam, allowed, "or write MJCF")
     model = whisker.spec().compile()
     root = Element("robot", name="whisker")
     root.append(Comment(f" {LACKING} "))

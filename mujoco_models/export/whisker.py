@@ -31,7 +31,7 @@ PREFIX = "whisker_"
 PASTE = f"""\
 In a robot: <asset><model name="whisker" file="whisker.xml"/></asset> and, in what holds it,
 <attach model="whisker" body="{PREFIX}foot" prefix="left_"/>, or MjSpec's attach_body. Carriage and
-motor stay behind; the robot's own <option> needs this time step, integrator and Jacobian.
+motor stay behind; the robot's own <option> needs this time step, integrator, Jacobian and flag.
 The motor's ctrl is the foot's velocity, not its place."""
 _INERTIA = 1e6  # of the carriage, in masses of the vibrissa, which does nothing to it
 _GAIN = _INERTIA * MASS / 0.01  # of the motor, which has the carriage at its speed in T1/100
@@ -94,6 +94,8 @@ class Whisker:
         set_options(spec, self.motion)
         spec.option.gravity = [0, 0, 0]
         spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0: wrong with sparse ones
+        # One contact a link past meshes, as past primitives: the error is that of either.
+        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
         self._scale(spec)
         self._touch(spec)
         if self.start is not None:

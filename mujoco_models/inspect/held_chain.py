@@ -236,7 +236,7 @@ class HeldChain(HeldModel):
             raise InputError(
                 self._body_of(least), "without a stiffness", "held by a spring",
                 "give its joint a stiffness, or the bodies an elasticity plugin with bend and "
-                "twist",
+                "twist; URDF has neither: save it as MJCF first",
             )  # fmt: skip
         return slope
 

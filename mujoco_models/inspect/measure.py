@@ -52,6 +52,8 @@ _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only roundin
 _TINY = 1e-11  # of the longest cell or largest bend; what is less, only rounding has
 _LONGEST = 1e60  # a first period: its fourth power is a number, too
 _WORLD = 0.999999  # cosine; along an axis of the world
+_REAL = 1e-6  # of a root: what is not real is more off it
+_FARTHEST = 3.0  # from zero, of all at which Runge and Kutta's steps do not grow
 _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
 
 
@@ -101,6 +103,10 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     sag, weight = _sag(held, axes)
     mass = float(model.body_mass[list(parts.chain)].sum())
     drive = drive_of(model, parts.foot, -axes[0])
+    whole = np.diag(squares), np.diag(damping), np.eye(len(squares))
+    if chain:
+        beside = np.flatnonzero(~np.isin(model.dof_bodyid, parts.chain))
+        whole = HeldChain(model, parts, beside).slopes()
     return MeasuredBeam(
         model=_model_name(model),
         foot=name_of(model.body(parts.foot), "body"),
@@ -124,7 +130,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         mass=float(masses_of(model, parts.chain).sum()),
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
-        stable_step=_stable_step(model, squares, damping),
+        stable_step=_stable_step(model, *whole),
         tolerance=float(model.opt.tolerance),
         undone=_undone(model) * period**4 / (mass * length**2),
         conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
@@ -327,16 +333,36 @@ def _undone(model: mujoco.MjModel) -> float:
     return float(model.opt.tolerance * model.stat.meaninertia * max(1, model.nv))
 
 
-def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> float:
+def _stable_step(
+    model: mujoco.MjModel, stiffness: Floats, damping: Floats, inertia: Floats
+) -> float:
     """The longest step at which no vibration grows, for integrators explicit in the springs.
 
-    With v1 (1 + c dt) = v0 - dt w^2 q0 and q1 = q0 + dt v1 a vibration of frequency w and damping
-    rate c decays if w^2 dt^2 < 4 + 2 c dt (Jury's criterion); Runge and Kutta's fourth order, with
-    the dampers explicit too, if w dt and c dt are below 2.78.
+    With (M + dt B) v1 = (M - dt (C - B)) v0 - dt K q0 and q1 = q0 + dt v1, of the dampers C those
+    in B implicit, one first turns over at each step where 4 M + 2 dt (2 B - C) - dt^2 K is
+    singular; Runge and Kutta's fourth order, with the dampers explicit too, has its polynomial.
     """
-    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
-        return float(2.78 / max(np.sqrt(squares.max()), damping.max()))
-    return float(((damping + np.hypot(damping, 2 * np.sqrt(squares))) / squares).min())
+    kinds, none = mujoco.mjtIntegrator, np.zeros_like(inertia)
+    runge_kutta = model.opt.integrator == kinds.mjINT_RK4
+    implicit = damping
+    if model.opt.integrator == kinds.mjINT_EULER:  # its motors' are explicit
+        off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+        implicit = none if off else np.minimum(damping, np.diag(model.dof_damping))
+    of_place, of_speed = (
+        (-stiffness, -damping) if runge_kutta else (stiffness / 4, damping / 2 - implicit)
+    )
+    rows = np.linalg.solve(inertia, np.hstack([of_place, of_speed]))
+    roots = np.linalg.eigvals(np.vstack([np.eye(len(rows), len(rows.T), len(rows)), rows]))
+    if not runge_kutta:
+        turning = roots.real[np.abs(roots.imag) <= _REAL * np.abs(roots)]
+        return float(1 / turning.max())
+    falling = roots[roots.real < 0]
+    low, high = 0.0, float(_FARTHEST / np.abs(falling).max())
+    while high - low > _REAL * high:
+        z = falling * (low + high) / 2
+        grows = (np.abs(1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))) > 1 + _REAL).any()
+        low, high = (low, (low + high) / 2) if grows else ((low + high) / 2, high)
+    return low
 
 
 def _model_name(model: mujoco.MjModel) -> str:

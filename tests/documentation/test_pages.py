@@ -19,6 +19,7 @@ from compare.commands.main import app
 from compare.read.tables import CaseFile
 from tests.compare.command import Done, vibrissa
 from tests.documentation.blocks import PAGES, ROOT, Block, blocks
+from tests.fuzz.mistakes import MISTAKES
 
 WITH_CODE = [page for page in PAGES if any(block.runs for block in blocks(page))]
 BIN = Path(sys.executable).parent
@@ -158,6 +159,15 @@ def test_every_kind_of_contour_and_its_keys_are_described():
         for kind in get_args(table.model_fields["kind"].annotation):
             (row,) = re.findall(rf"^\| `{kind}` \|.*", page, re.M)
             assert keys <= set(re.findall(r"\w+", row)), row
+
+
+def test_pages_say_the_same_of_planted_mistakes():
+    """As ``python -m tests.fuzz.mistakes 7`` prints it; a new mistake makes what they say old."""
+    said = r"Of (\d+) (?:such )?mistakes .*?(\d+) % .*?named rightly and ([\d.]+) % wrongly"
+    pages = [ROOT / "compare" / "gates.md", ROOT / "docs" / "release" / "paper.md"]
+    of_gates, of_paper = (re.search(said, page.read_text(), re.I | re.S) for page in pages)
+    assert of_gates.groups() == of_paper.groups()
+    assert int(of_gates[1]) == 7 * sum(mistake.must for mistake in MISTAKES.values())
 
 
 def test_blocks_are_in_a_language_that_is_run_or_say_why_not():

@@ -27,10 +27,9 @@ def installed(tmp_path, install):
 
 
 def test_it_is_found(installed):
-    assert "shooting" in [found.name for found in list_engines() if found.trouble is None]
-    assert find_engine("shooting").role == "other model"
     (found,) = (one for one in list_engines() if one.name == "shooting")
     project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
+    assert (found.engine, found.trouble) == (find_engine("shooting"), None)
     assert found.version == project["version"]  # not SciPy's, which it needs
 
 

@@ -12,7 +12,7 @@ from compare.read.case import load_job
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
-from engines import find_engine, list_engines, sweep_apart
+from engines import Found, find_engine, list_engines, sweep_apart
 from engines.known import named_engines
 from mujoco_models import Settings
 from tests.compare.command import vibrissa
@@ -47,10 +47,21 @@ NAN, SHORT, TABLE = Odd("not-a-number"), Odd("short"), Odd("table")
 MISSING, OLD = Odd("missing", "no-such-thing>=2"), Odd("old", "numpy<1")
 
 class Bare:
-    requires = "numpy"
+    pass
 
-BARE, MUTE, VAGUE = Bare(), Bare(), Odd("vague")
-MUTE.role, VAGUE.role = "twin", "rival"
+class Short:
+    def sweep(self, case): ...
+
+class Hurried:
+    def sweep(self, case, settings): ...
+
+class Alone:
+    def sweep(self, case, settings, advance=lambda: None):
+        return MUJOCO.sweep(case, settings, advance)
+
+BARE, SHORTER, HURRIED, ALONE, CLASS = Bare(), Short(), Hurried(), Alone(), Alone
+VAGUE, LISTS, NEEDY = Odd("vague"), Odd("lists"), Odd("needy", 5)
+VAGUE.role, LISTS.tuned = "rival", ["nothing"]
 """
 POINTS = """
 [vibrissa.engines]
@@ -63,10 +74,16 @@ short = odd_engines:SHORT
 table = odd_engines:TABLE
 missing = odd_engines:MISSING
 bare = odd_engines:BARE
-mute = odd_engines:MUTE
+shorter = odd_engines:SHORTER
+hurried = odd_engines:HURRIED
+alone = odd_engines:ALONE
+class = odd_engines:CLASS
 vague = odd_engines:VAGUE
+lists = odd_engines:LISTS
+needy = odd_engines:NEEDY
 old = odd_engines:OLD
 broken = odd_engines:NOTHING
+fails = failing_engine:ENGINE
 mujoco = odd_engines:RAISES
 """
 
@@ -75,6 +92,7 @@ mujoco = odd_engines:RAISES
 def odd_engines(tmp_path, install):
     """A distribution that offers engines, as pip installs one."""
     (tmp_path / "odd_engines.py").write_text(textwrap.dedent(ODD))
+    (tmp_path / "failing_engine.py").write_text("raise RuntimeError('no\\nluck')")
     install("odd-engines", "1.0", POINTS)
     yield tmp_path
     sys.modules.pop("odd_engines", None)
@@ -84,8 +102,15 @@ def test_the_shipped_engines_are_listed_first_and_cannot_be_replaced(odd_engines
     found = {one.name: one for one in list_engines()}
     assert next(iter(found)) == "mujoco"
     assert found["mujoco"].trouble is None
-    assert found["mujoco"].engine.role == "subject"
+    assert found["mujoco"].role == "subject"
+    assert found["mujoco"].version != "1.0"  # of the distribution that offers another
     assert {"raises", "hangs", "broken"} < set(found)
+
+
+def test_a_sweep_is_enough(odd_engines):
+    (found,) = (one for one in list_engines() if one.name == "alone")
+    assert found == Found("alone", found.engine, "1.0", None, "other model", "")
+    assert find_engine("alone") is found.engine
 
 
 @pytest.mark.parametrize(
@@ -94,8 +119,13 @@ def test_the_shipped_engines_are_listed_first_and_cannot_be_replaced(odd_engines
         ("missing", "no-such-thing is not installed: pip install 'no-such-thing>=2'"),
         ("old", "is not <1: pip install 'numpy<1'"),
         ("broken", "cannot be loaded"),
-        ("bare", "no attribute 'role'"),
-        ("mute", "no attribute 'sweep'"),
+        ("fails", "cannot be loaded (RuntimeError: no luck)"),
+        ("bare", "Bare has no method sweep(case, settings, advance)"),
+        ("shorter", "sweep(case, settings) cannot be called: too many positional arguments"),
+        ("hurried", "sweep(case, settings, advance) cannot be called: too many positional"),
+        ("class", "an engine is an object, as Alone(), and no class"),
+        ("lists", "tuned is ['nothing'], no text"),
+        ("needy", "requires is 5, no requirement of pip's"),
         ("vague", "role is 'rival', not one of subject, twin, other model"),
         ("mujocco", "one of mujoco"),
     ],

@@ -14,7 +14,8 @@ def my_simulator(case: Case) -> Readings:
     """Yours, in place of this stand-in: the closed form, a tenth of a per cent too stiff.
 
     A simulator gets the problem (`case.beam`, `case.profile`, `case.foot_x`) and returns what the
-    clamp does to the vibrissa at every station.
+    clamp does to the vibrissa at every station. Thickness counts: the axis of the vibrissa stays
+    `case.beam.radius` off the profile.
     """
     exact = solve_sweep(case)
     table = pd.DataFrame(

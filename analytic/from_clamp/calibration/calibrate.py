@@ -19,7 +19,7 @@ from analytic.from_clamp.passes import (
     consistency,
     left_by_noise,
 )
-from analytic.from_clamp.reconstruct import doubt, reconstruct
+from analytic.from_clamp.reconstruct import LIKELY, doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
@@ -224,7 +224,7 @@ def calibrate(
         }
 
     scattered = {} if alike is None else intervals(alike.scatter)
-    return Calibration(
+    calibration = Calibration(
         intervals(DOUBLE_SIDED_95 * deviations),
         sought.case,
         sought.offset,
@@ -240,6 +240,12 @@ def calibrate(
         len(set(measured.ways)) > 1,
         hidden,
     )
+    if not calibration.explains:
+        why = doubt_of_case(passes[0], case)
+        if why is not None and LIKELY in why:
+            best = f"{misfit:.2g} times the noise away from the best fit"
+            raise InputError("readings", best, "those of a vibrissa past an object", why)
+    return calibration
 
 
 def doubt_of_case(readings: Readings, case: Case) -> str | None:

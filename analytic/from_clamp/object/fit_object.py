@@ -157,7 +157,7 @@ def fit_object(
         family,
         FAMILIES,
         fit,
-        "several objects, a corner, friction, or a vibrissa that is not as stated",
+        "several objects, a corner, friction, or a vibrissa or clamp that is not as stated",
     )
 
 

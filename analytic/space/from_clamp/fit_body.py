@@ -165,7 +165,7 @@ def fit_body(
         start = _through_points(known[name], points, normals)
         return _fitted(passes, known[name], start, length, stated)
 
-    remedy = "edges, friction, or a vibrissa that is not as stated"
+    remedy = "edges, friction, or a vibrissa or clamp that is not as stated"
     return likeliest(family, BODY_FAMILIES, fit, remedy)
 
 

@@ -151,7 +151,7 @@ class SpatialReadings(SweepTable):
                 _checked(content.table, path.name, content.place),
                 otherwise if known is None else Beam(**known),
                 metadata.get("tangent", upright),
-                metadata.get("source", f"measured, {path.name}"),
+                metadata.get("source", path.name),
                 metadata.get("provenance", {}),
             )
 

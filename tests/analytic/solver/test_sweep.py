@@ -1,6 +1,6 @@
 """The sweep as a whole: balance, scaling, continuity, reconstruction, and where it ends."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,7 @@ from analytic import (
     COLUMNS,
     Beam,
     Case,
+    Event,
     Sweep,
     catenary,
     circle,
@@ -24,6 +25,7 @@ from analytic import (
     solve_sweep,
     two_circles,
 )
+from analytic.problem.columns import SCHEMA, WORDS
 
 HEIGHTS = st.floats(0.05, 0.8)
 OBJECTS = st.one_of(
@@ -37,6 +39,11 @@ OBJECTS = st.one_of(
         lambda r, q, low: two_circles(r, q, (0, low)), st.floats(0.1, 4), st.floats(0.1, 4), HEIGHTS
     ),
 )
+
+
+def test_a_column_is_in_all_places_that_make_it():
+    assert {field.name for field in fields(Event)} == set(COLUMNS)
+    assert set(COLUMNS) <= {*SCHEMA, *WORDS}  # what is not there keeps no unit
 
 
 def test_table(case, exact):

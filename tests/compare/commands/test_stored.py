@@ -153,3 +153,16 @@ def test_a_film_of_somebody_else_stays(tmp_path):
         assert film.is_file()
     assert vibrissa(*run, cwd=tmp_path).returncode < 2
     assert not film.exists()  # it would be of another sweep
+
+
+@pytest.mark.slow
+def test_contacts_are_written_though_no_family_explains_them(tmp_path):
+    (tmp_path / "wedge.toml").write_text(
+        '[profile]\nkind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]\n'
+        "[sweep]\nstations = 24\n"
+    )
+    vibrissa("run", "wedge.toml", "--engine", "exact", "--out", "w", cwd=tmp_path).ended(0)
+    words = ("reconstruct", "w/analytic.parquet", "--fit", "auto", "--out", "o")
+    done = vibrissa(*words, cwd=tmp_path)
+    done.ended(1, "family = none of them", "a vibrissa or clamp that is not as stated")
+    assert (tmp_path / "o" / "points.csv").is_file()

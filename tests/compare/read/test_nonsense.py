@@ -7,6 +7,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
 from analytic.from_clamp.noise import scatter
+from compare.read.nonsense import spikes
 from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from compare.show.passes import passes_summary
@@ -191,6 +192,49 @@ def test_a_refused_pass_has_a_picture_and_leaves_the_others_as_they_are(tmp_path
     done.refused("is stuck")
     assert (tmp_path / "out" / "pass.png").stat().st_size > 10_000
     assert not (tmp_path / "out" / "pass.parquet").exists()
+
+
+@pytest.mark.parametrize("rows", [(300,), (300, 301, 302), (30,)])
+def test_spikes_are_left_out_and_counted(tmp_path, rows):
+    """One cell of 9999999 was kept: a fit found a foot that jitters by a tenth of the length."""
+
+    def spiked(values):
+        for row in rows:
+            values[2, row] += 0.15 * np.abs(values[2]).max()
+        return values
+
+    one, *_ = look_at_passes(*rig(tmp_path, spiked))
+    assert one.dropped["spikes"] == len(rows)
+    assert not np.isfinite(one.readings.values("force_y")[list(rows)]).any()
+    assert one.fault is None
+
+
+@pytest.mark.parametrize("kind", ["white", "walk"])
+def test_no_sweep_has_spikes_of_its_own(tmp_path, kind):
+    """Nor where it snaps off, next to which a reading grows ever faster."""
+    for seed in range(12):
+        (one,) = look_at_passes(*rig(tmp_path, kind=kind, seed=seed))
+        assert one.dropped["spikes"] == 0
+    assert not spikes(exact()[1:]).any()
+
+
+def test_what_a_table_is_not_is_said(tmp_path):
+    files, described = rig(tmp_path)
+    text = files[0].read_text()
+    files[0].write_text(text.replace(".", ","))
+    with pytest.raises(InputError, match=r"8 cells for 4 names.*its commas divide cells"):
+        look_at_passes(files, described)
+    german = text.replace(",", ";").replace(".", ",")
+    files[0].write_text(german.replace("\n0,4", "\n1.000,4", 1))
+    with pytest.raises(InputError, match=r"'1\.000,4.*without a separator of thousands"):
+        look_at_passes(files, described)
+    files[0].write_text(german)
+    (tmp_path / "other.xlsx").write_bytes(b"PK\x03\x04")
+    with pytest.raises(InputError, match=r"other\.xlsx.*export it as text"):
+        look_at_passes([tmp_path], described)
+    files[0].write_bytes(b"PK\x03\x04" + bytes(range(256)))
+    with pytest.raises(InputError, match=r"a workbook.*CSV"):
+        look_at_passes(files, described)
 
 
 def test_channels_of_zeros_are_named_without_a_warning(tmp_path):

@@ -135,3 +135,32 @@ def test_a_phase_is_not_misjudged_where_two_places_touch():
     assert two.sum() > 5
     table = confusion(classify(exact), exact).to_numpy()
     assert np.trace(table) == table.sum() == len(exact.table) - two.sum()
+
+
+def rung(sweep, held=0):
+    """As a loop of steps writes it: without events, ringing where it is free.
+
+    What is held keeps the last contact's readings instead, and chatters from half to twice them.
+    """
+    table, free = sweep.table.copy(), np.flatnonzero(sweep.table["phase"] == "free")
+    last = int(np.flatnonzero(sweep.table["phase"] != "free")[-1])
+    after = free[free > last]
+    swing = np.cos(np.linspace(1.0, 40.0, len(after))) * np.exp(-np.linspace(0, 4, len(after)))
+    chatter = 1.25 + 0.75 * np.cos(2.0 * np.arange(len(after)))
+    for name, share in zip(CLAMP_READINGS, (0.3, 0.05, -0.3), strict=True):
+        size = float(np.abs(table[name]).max())
+        table.loc[after, name] = chatter * table[name][last] if held else share * size * swing
+        table.loc[0, name] = 0.02 * share * size
+    provenance = {k: v for k, v in sweep.provenance.items() if k != "events"}
+    return replace(sweep, table=table, provenance=provenance)
+
+
+@pytest.mark.parametrize("stations", [80, 200, 800])
+def test_ringing_hides_no_release_and_chatter_is_none(stations):
+    sweep = Sweep(stations, start=0.9)
+    exact = solve_sweep(Case(profile=circle(0.8, (0.0, 0.4)), sweep=sweep))
+    found = compare(exact, rung(exact))
+    step = float(np.abs(np.diff(exact.values("foot_x"))).max())
+    for name in ("first_contact", "snap_off"):
+        assert abs(found.events[name].difference) <= step
+    assert compare(exact, rung(exact, held=1)).snap_off.candidate is None

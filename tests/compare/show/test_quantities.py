@@ -8,7 +8,7 @@ from analytic import SENSED, Beam, Case, Readings, circle, solve_sweep
 from compare import compare
 from compare.commands import terminal
 from compare.show.figures.over_foot import foot_label, reading_label
-from compare.show.numbers import quantity
+from compare.show.numbers import quantity, uncertain
 from compare.show.report import summary_of
 from tests.compare.show.pages import written_page
 from tests.conftest import exact_sweep
@@ -33,6 +33,21 @@ def test_the_prefix_that_keeps_a_number_readable(value, kind, text):
     assert quantity(value, kind, Beam()) == f"{value:.4g}"
 
 
+@pytest.mark.parametrize(
+    ("value", "half", "text", "plain"),
+    [
+        (0.5163e-3, 6.342e-6, "0.5163 ± 0.0063 mm", "0.0005163 ± 6.3e-6"),
+        (-5e-4, 6.953e-10, "-0.5 ± 7.0e-7 mm", "-0.0005 ± 7.0e-10"),
+        (2e-6, 0.0214, "0 ± 21 mm", "0.000 ± 0.021"),
+        (0.01, 0.0, "10 mm", "0.01"),
+        (0.0, 0.0, "0 m", "0"),
+    ],
+)
+def test_a_number_and_its_uncertainty_have_one_unit(value, half, text, plain):
+    assert uncertain(value, half, "length", SI) == text
+    assert uncertain(value, half, "length", Beam()) == plain
+
+
 @pytest.fixture(scope="module")
 def exact() -> Readings:
     return solve_sweep(Case(SI, circle(0.04, lowest=(0.0, 0.02))))
@@ -48,7 +63,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     found = compare(exact, measured(exact), offset=2e-3)
     page = written_page(found)
     assert "L = 50 mm, forces in EI/L² = 0.8 mN" in page
-    assert "(2 mm ± 0 m)" in page
+    assert "<dd>2 mm<small>" in page
     assert "the candidate&#39;s true ones are not known" in page
     assert reading_label(exact, "moment_z").endswith("= 40 µN m)")
     assert "50 mm" in foot_label(exact)

@@ -82,6 +82,23 @@ def many(exact):
     return SideBySide.of(exact, {"mine": mine}, asked, case="parabola")
 
 
+def test_one_without_readings_is_not_said_to_disagree(exact):
+    asked = [EngineOutcome("mine"), EngineOutcome("lost", trouble="not installed")]
+    page = side_by_side_document(SideBySide.of(exact, {"mine": exact}, asked))
+    assert page.verdict.good is False
+    assert page.verdict.claim == "1 of 2 agrees with the closed form, 1 gave no readings."
+
+
+def test_pictures_fit_a_telephone_and_a_time_needs_another(exact):
+    def pictures(*names):
+        asked = [EngineOutcome(name, "other model") for name in names]
+        found = SideBySide.of(exact, dict.fromkeys(names, shifted(exact, 1e-3, 6.0)), asked)
+        return {one.name: one.layout for one in side_by_side_document(found).pictures()}
+
+    assert pictures("mine") == {"apart": "three"}
+    assert pictures("mine", "yours") == {"time": "middle", "apart": "three"}
+
+
 def test_of_few_settled_stations_there_are_no_figures(exact):
     """One station in contact may agree to any digit."""
     bad = exact.table.assign(status="unsettled")
@@ -96,8 +113,8 @@ def test_of_few_settled_stations_there_are_no_figures(exact):
 def test_cause_and_lack_of_time_are_in_table_page_and_picture(many):
     (row,) = outcomes_table({many.case: many.outcomes}).rows
     assert row[0] == "mine 1.2, other model"
-    assert row[-2] == "none"
-    assert row[-1] == "disagrees"
+    assert row[-1] == "none"
+    assert row[1] == "disagrees"
     (listed,) = reasons(many.outcomes)
     (why,) = listed.said
     assert why.startswith("mine: likely ")

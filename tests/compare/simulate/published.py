@@ -22,6 +22,7 @@ class Published:
     before: str = ""  # of the world
     gravity: str = "0 0 0"
     inertia: float = 10.0  # of the slide
+    hold: float = 1e3  # rate at which its motor takes up a speed; Euler's steps are explicit in it
 
     @property
     def text(self) -> str:
@@ -32,8 +33,8 @@ class Published:
             f'<body name="base"><joint name="rail" type="slide" axis="0 1 0" armature="'
             f'{self.inertia:g}"/><inertial pos="0 0 0" mass="1e-3" diaginertia="'
             f'{moments}"/><site name="clamp"/>{self.inside}</body></worldbody><actuator><velocity '
-            f'joint="rail" kv="{1e3 * self.inertia:g}"/></actuator><sensor><force site="clamp"/>'
-            f'<torque site="clamp"/></sensor></mujoco>'
+            f'joint="rail" kv="{self.hold * self.inertia:g}"/></actuator><sensor><force '
+            f'site="clamp"/><torque site="clamp"/></sensor></mujoco>'
         )
 
 
@@ -83,7 +84,7 @@ def whip(count: int, length: float, mass: float, spring: str, step: float) -> Pu
     ball = f'<geom type="sphere" pos="{h} 0 0" size="0.02" mass="{mass}"/>'
     link = Link(h, f'<joint type="hinge" axis="0 0 1" {spring}/>', rod + ball)
     return chain((count - 1) * [link], rod + ball, h, option=f'timestep="{step}"',
-                 gravity="9.81 0 0", inertia=1e6)  # fmt: skip
+                 gravity="9.81 0 0", inertia=1e6, hold=1 / step)  # fmt: skip
 
 
 def elephant() -> Published:
@@ -112,7 +113,7 @@ def spiral() -> Published:
         box = f'<geom type="box" size="{size}" pos="{half:.6g} 0 0" density="1100"/>'
         links.append(Link(0.0295615 * s, joint, box))
     return chain(links, option='timestep="0.005" impratio="10" iterations="50"',
-                 gravity="-9.81 0 0", inertia=1e5)  # fmt: skip
+                 gravity="-9.81 0 0", inertia=1e5, hold=100.0)  # fmt: skip
 
 
 def tentacle() -> Published:
@@ -129,7 +130,7 @@ def tentacle() -> Published:
         links.append(Link(1e-3 * length, joint, capsule(1e-3 * length, d / 2, "")))
     return chain(links, capsule(1e-3 * at[0], 1.7e-3, ""), 1e-3 * at[0],
                  option='timestep="0.005" iterations="50"', gravity="-9.81 0 0",
-                 inertia=100.0)  # fmt: skip
+                 inertia=100.0, hold=100.0)  # fmt: skip
 
 
 def rat() -> Published:
@@ -150,7 +151,16 @@ def rat() -> Published:
         more = f'mass="{masses[i]:.6g}"'
         links.append(Link(h, joints, capsule(h, (radii[i] + radii[i + 1]) / 2, more)))
     lead = capsule(h, (radii[0] + radii[1]) / 2, f'mass="{masses[0]:.6g}"')
-    return chain(links, lead, h, option='timestep="0.005"', gravity="0 0 -9810", inertia=1e6)
+    return chain(links, lead, h, option='timestep="0.005"', gravity="0 0 -9810", inertia=1e6,
+                 hold=100.0)  # fmt: skip
+
+
+def mouse() -> Published:
+    """One of its hinges is turned by 45 degrees: it twists the whisker, too."""
+    spring = 'stiffness="0.02" damping="0.02" armature="0.00065"'
+    joints = "".join(f'<joint axis="{axis}" {spring}/>' for axis in ("1 -1 0", "0 0 1"))
+    links = 12 * [Link(0.005, joints, capsule(0.005, 0.001, 'mass="1e-7"'))]
+    return chain(links, gravity="0 0 -9.81")
 
 
 WHISKER = (
@@ -208,4 +218,6 @@ CHAINS: dict[str, Callable[[], Published]] = {
     "Tentacle": tentacle,
     # github.com/SeNSE-lab/whiskitphysics, code/src/Whisker.cpp
     "Rat's whisker": rat,
+    # github.com/Shavdrag/MouseObstacleAvoidance, models/dynamic_4l_maze_env0.xml
+    "Mouse's whisker": mouse,
 }

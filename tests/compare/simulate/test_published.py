@@ -45,6 +45,7 @@ FOUND = {
     "Whip of 25": ({"clamp", "radius", "gravity", "contact", "solver"}, set(), 0.0063),
     # A cone of 1 to 30: its last links are too few.
     "Rat's whisker": ({"links", "gravity", "contact"}, {"links"}, 0.04),
+    "Mouse's whisker": ({"clamp", "contact", "damping"}, set(), 0.0040),
     # Boxes: what touches them feels steps of their thickness.
     "Spiral robot": ({"clamp", "limits", "radius", "gravity", "contact"}, {"radius"}, 0.13),
 }  # fmt: skip
