@@ -18,7 +18,7 @@ from analytic.problem.arrays import Booleans, Floats
 
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 _CLEARLY = 5.0  # standard deviations of a slope of which nothing is taken off
-_ALIKE = 0.95  # of what blocks may show of a memory; more is not told from a drift
+_ALIKE = 0.95  # of what blocks may show of a memory; more looks as a drift does
 _BY_CHANCE = 0.01  # probability of slopes that differ so much; less is a drift that bends
 # Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u)
 # over the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
