@@ -18,6 +18,7 @@ from analytic.problem.arrays import Booleans, Floats
 
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 _CLEARLY = 5.0  # standard deviations of a slope of which nothing is taken off
+_ALIKE = 0.95  # of what blocks may show of a memory; more looks as a drift does
 _BY_CHANCE = 0.01  # probability of slopes that differ so much; less is a drift that bends
 # Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u)
 # over the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
@@ -36,7 +37,10 @@ class Zero(NamedTuple):
     # and how well that is known. NaN of one stretch.
     bend: Floats
     bend_uncertainty: Floats  # of white noise
-    memory: Floats  # shape (2, 3); times its variance is that of means of blocks; 1 of white noise
+    # Shape (2, 3); times its variance is that of means of blocks, 1 of white noise; and the rows of
+    # a block, times which it is of noise that remembers longer.
+    memory: Floats
+    most: Floats
     # Shape (3,); of one stretch, by how much it would drift over the pass if it went on as there; 0
     # where that is within noise.
     ahead: Floats
@@ -47,12 +51,12 @@ def no_zero(values: Floats) -> Zero:
     unknown, each = np.full(len(values), np.nan), np.full((2, len(values)), np.nan)
     line = np.full_like(values, np.nan)
     nowhere, none = np.zeros(values.shape[1]), np.zeros(len(values))
-    return Zero(unknown, unknown, unknown, line, nowhere, each, each, each, none)
+    return Zero(unknown, unknown, unknown, line, nowhere, each, each, each, each, none)
 
 
 def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str) -> Zero:
     """The zero that the free stretches of a pass show, as a line through their means."""
-    means, places, uncertain = [], [], []
+    means, places, uncertain, most = [], [], [], []
     slopes, slope_uncertain, remembered = [], [], []
     rounded = np.array([rounding(row) for row in values])
     for which, here in free.items():
@@ -77,6 +81,7 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
         slopes.append(slope)
         slope_uncertain.append(known)
         remembered.append(memory)
+        most.append(np.full_like(memory, sound.sum() / FEWEST))
     drift, way = means[-1] - means[0], places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
     line = means[0][:, None] + drift[:, None] * share
@@ -87,8 +92,8 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
     bend = way * np.array(slopes) - drift
     of_bend = np.hypot(abs(way) * np.array(slope_uncertain), np.hypot(*uncertain))
     known, none = np.max(uncertain, axis=0), np.zeros_like(drift)
-    memory = np.array(remembered)
-    return Zero(means[0], drift, known, line, share, bend, of_bend, memory, none)
+    more = np.array(remembered), np.array(most)
+    return Zero(means[0], drift, known, line, share, bend, of_bend, *more, none)
 
 
 def _slope(x: Floats, values: Floats, levels: Floats) -> tuple[Floats, Floats, Floats]:
@@ -116,7 +121,11 @@ def bent(zeros: Sequence[Zero]) -> list[Bent]:
     """What the drift of all passes of a rig has besides lines."""
     bends = np.array([one.bend for one in zeros])
     # Three degrees of freedom of a stretch are few: those of all passes say how noise remembers.
-    memory = np.maximum(1.0, np.mean([one.memory for one in zeros], axis=(0, 1)))
+    memory, most = np.mean([(one.memory, one.most) for one in zeros], axis=(0, 2))
+    memory = np.maximum(memory, memory.mean())  # some passes of one reading say little of it
+    # Noise that remembers from one block to the next makes them alike: they show less of it. So far
+    # as here slopes of AR(0.5) to AR(0.97) scatter, to 10 %.
+    memory = np.maximum(1.0, memory / (1 - np.minimum(memory / most, _ALIKE)))
     sizes = np.array([one.bend_uncertainty for one in zeros]) * np.sqrt(memory)
     sizes = np.maximum(sizes, np.finfo(float).tiny)
     mean, of_mean = _weighted(bends, sizes**2)

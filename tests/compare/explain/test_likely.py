@@ -241,3 +241,12 @@ def test_beside_a_defect_of_the_record_what_is_left_without_a_cause_is_said():
     found = measure(exact, changed(exact, force_y=force), 5e-3)
     said = likely_cause(found, Tolerances(), NoiseAllowance())
     assert said == "2 of 128 rows lack a number; " + _UNKNOWN
+
+
+def test_a_cause_of_nearly_all_comes_before_lost_rows():
+    """They were called the cause of an opposite sign."""
+    exact = solved()
+    table = exact.table.assign(force_y=-exact.table["force_y"]).drop(index=range(60, 90))
+    found = measure(exact, replace(exact, table=table.reset_index(drop=True)), 5e-3)
+    said = likely_cause(found, Tolerances(), NoiseAllowance())
+    assert said.startswith("opposite sign of force_y; beside that some 30 rows are not there")

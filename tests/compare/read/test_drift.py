@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from compare.read.drift import bent, zero_of
 
@@ -14,10 +15,11 @@ SHAPES = {
 }
 
 
-def passes(shape, count, seed):
+def passes(shape, count, seed, memory=0.0):
     """Zeros of passes without a contact, and what is off the truth in the middle of each."""
     rng, true = np.random.default_rng(seed), SHAPES[shape](WAY)
-    values = true + NOISE * rng.standard_normal((count, 3, ROWS))
+    white = rng.standard_normal((count, 3, ROWS)) * np.sqrt(1 - memory**2)
+    values = true + NOISE * lfilter([1.0], [1.0, -memory], white)
     zeros = [zero_of(WAY, one, FREE, "pass") for one in values]
     return zeros, bent(zeros), true
 
@@ -40,8 +42,10 @@ def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape):
         assert np.sqrt(np.mean(np.square(missed))) > 0.01  # what a line leaves
 
 
-def test_a_straight_drift_stays_a_line():
-    shown = [passes("line", 10, seed)[1][0].shows for seed in range(40)]
+@pytest.mark.parametrize("memory", [0.0, 0.7])
+def test_a_straight_drift_stays_a_line(memory):
+    """In noise that remembers, too, of which stretches are as short as they are here: 7 times."""
+    shown = [passes("line", 10, seed, memory)[1][0].shows for seed in range(40)]
     assert np.mean(shown) < 0.1
 
 
