@@ -13,16 +13,24 @@ import numpy as np
 from scipy.special import gammaincc
 
 from analytic import InputError
+from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
 
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
-_CLEARLY = 5.0  # standard deviations of a slope of which nothing is taken off
-_ALIKE = 0.95  # of what blocks may show of a memory; more looks as a drift does
+# Standard deviations of a slope of which nothing is taken off; 0.4 % are more by noise alone.
+_CLEARLY = 3.0
 _BY_CHANCE = 0.01  # probability of slopes that differ so much; less is a drift that bends
 # Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u)
 # over the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
 _AS_BENT = 3.0
+
+
+class Stretch(NamedTuple):
+    """The rows of a pass in which the vibrissa is free."""
+
+    foot_x: Floats  # shape (rows,)
+    values: Floats  # shape (3, rows)
 
 
 class Zero(NamedTuple):
@@ -33,14 +41,7 @@ class Zero(NamedTuple):
     uncertainty: Floats  # shape (3,); NaN of one stretch, which shows no drift
     line: Floats  # shape (3, rows); from the one stretch to the other
     share: Floats  # shape (rows,); of the way from the one stretch to the other
-    # Shape (2, 3); by how much the zero would miss the other stretch if it went on as in either,
-    # and how well that is known. NaN of one stretch.
-    bend: Floats
-    bend_uncertainty: Floats  # of white noise
-    # Shape (2, 3); times its variance is that of means of blocks, 1 of white noise; and the rows of
-    # a block, times which it is of noise that remembers longer.
-    memory: Floats
-    most: Floats
+    stretches: tuple[Stretch, ...]  # that it is from
     # Shape (3,); of one stretch, by how much it would drift over the pass if it went on as there; 0
     # where that is within noise.
     ahead: Floats
@@ -48,17 +49,14 @@ class Zero(NamedTuple):
 
 def no_zero(values: Floats) -> Zero:
     """Where no stretch is known to be free."""
-    unknown, each = np.full(len(values), np.nan), np.full((2, len(values)), np.nan)
+    unknown, nowhere = np.full(len(values), np.nan), np.zeros(values.shape[1])
     line = np.full_like(values, np.nan)
-    nowhere, none = np.zeros(values.shape[1]), np.zeros(len(values))
-    return Zero(unknown, unknown, unknown, line, nowhere, each, each, each, each, none)
+    return Zero(unknown, unknown, unknown, line, nowhere, (), np.zeros(len(values)))
 
 
 def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str) -> Zero:
     """The zero that the free stretches of a pass show, as a line through their means."""
-    means, places, uncertain, most = [], [], [], []
-    slopes, slope_uncertain, remembered = [], [], []
-    rounded = np.array([rounding(row) for row in values])
+    stretches = []
     for which, here in free.items():
         sound = here & np.isfinite(values).all(axis=0)
         if sound.sum() < FEWEST:
@@ -68,45 +66,56 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
                 f"one with {FEWEST} or more",
                 "take a longer one, or leave it out",
             )
-        means.append(values[:, sound].mean(axis=1))
-        places.append(foot_x[sound].mean())
-        # Noise that remembers makes the means of blocks scatter more than white noise would.
-        blocks = np.array_split(values[:, sound], FEWEST, axis=1)
-        levels = np.array([x.mean(axis=1) for x in blocks])
-        with np.errstate(over="ignore", invalid="ignore"):  # such numbers are refused later
-            between = np.std(levels, axis=0, ddof=1) / np.sqrt(FEWEST)
-            white = values[:, sound].std(axis=1, ddof=1) / np.sqrt(sound.sum())
-            slope, known, memory = _slope(foot_x[sound], values[:, sound], levels)
-        uncertain.append(np.max([between, white, rounded], axis=0))
-        slopes.append(slope)
-        slope_uncertain.append(known)
-        remembered.append(memory)
-        most.append(np.full_like(memory, sound.sum() / FEWEST))
+        stretches.append(Stretch(foot_x[sound], values[:, sound]))
+    means = [one.values.mean(axis=1) for one in stretches]
+    uncertain = [_of_mean(one.values) for one in stretches]
+    places = [one.foot_x.mean() for one in stretches]
+    with np.errstate(over="ignore", invalid="ignore"):  # such numbers are refused later
+        slopes, variances = _slopes(stretches)
     drift, way = means[-1] - means[0], places[-1] - places[0]
     share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
     line = means[0][:, None] + drift[:, None] * share
-    if len(free) < 2 or way == 0:
-        shown = np.abs(slopes[0]) > _CLEARLY * slope_uncertain[0]
+    if len(stretches) < 2 or way == 0:
+        shown = np.abs(slopes[0]) > _CLEARLY * np.sqrt(variances[0])
         ahead = np.where(shown, slopes[0] * (foot_x[-1] - foot_x[0]), 0.0)
         return no_zero(values)._replace(before=means[0], line=line, ahead=ahead)
-    bend = way * np.array(slopes) - drift
-    of_bend = np.hypot(abs(way) * np.array(slope_uncertain), np.hypot(*uncertain))
-    known, none = np.max(uncertain, axis=0), np.zeros_like(drift)
-    more = np.array(remembered), np.array(most)
-    return Zero(means[0], drift, known, line, share, bend, of_bend, *more, none)
+    rounded = np.array([rounding(row) for row in values])
+    known = np.max([*uncertain, rounded], axis=0)
+    return Zero(means[0], drift, known, line, share, tuple(stretches), np.zeros_like(drift))
 
 
-def _slope(x: Floats, values: Floats, levels: Floats) -> tuple[Floats, Floats, Floats]:
-    """Slopes of a stretch, their standard deviations by white noise, and what memory adds."""
-    away = x - x.mean()
-    square = max(float(away @ away), np.finfo(float).tiny)
-    slope = values @ away / square
-    left = values - values.mean(axis=1, keepdims=True) - slope[:, None] * away
-    white = np.sum(left**2, axis=1) / max(len(x) - 2, 1)
-    blocks = np.array([part.mean(axis=1) for part in np.array_split(left, len(levels), axis=1)])
-    scatter = np.sum(blocks**2, axis=0) / (len(levels) - 2) * (len(x) / len(levels))
-    memory = np.divide(scatter, white, out=np.ones_like(white), where=white > 0)
-    return slope, np.sqrt(white / square), memory
+def _of_mean(values: Floats) -> Floats:
+    """Standard deviation of means: of blocks, which noise that remembers makes scatter more."""
+    blocks = [one.mean(axis=1) for one in np.array_split(values, FEWEST, axis=1)]
+    with np.errstate(over="ignore", invalid="ignore"):  # such numbers are refused later
+        between = np.std(blocks, axis=0, ddof=1) / np.sqrt(FEWEST)
+        white = values.std(axis=1, ddof=1) / np.sqrt(values.shape[1])
+    return np.asarray(np.maximum(between, white))
+
+
+def _slopes(stretches: Sequence[Stretch]) -> tuple[Floats, Floats]:
+    """Slopes of the readings of each stretch, and their variances, each shape (stretches, 3).
+
+    By the noise of all stretches, whatever it remembers: it may seem to drift along a curve.
+    """
+    away = [one.foot_x - one.foot_x.mean() for one in stretches]
+    widths = [float(np.ptp(x)) or 1.0 for x in away]
+    lines = np.concatenate([x / width for x, width in zip(away, widths, strict=True)])
+    columns = np.stack([np.ones_like(lines), lines], axis=1)[:, None, :]
+    rows = [len(x) for x in away]
+    slopes, variances = np.zeros((2, len(rows), 3))
+    for i in range(3):
+        seen = [one.values[i] for one in stretches]
+        size = max(float(np.std(np.concatenate([np.diff(x) for x in seen]))), *map(rounding, seen))
+        if size == 0:
+            continue  # a channel that stands still, and is refused for that where others do not
+        readings = np.concatenate([x - x.mean() for x in seen])[:, None] / size
+        none = np.zeros((len(readings), 1, 0)), np.zeros(0)
+        found = estimate(readings, columns, *none, rows=rows).by_pass
+        for k, ((_, slope), covariance) in enumerate(found):
+            slopes[k, i] = size * slope / widths[k]
+            variances[k, i] = size**2 * covariance[1, 1] / widths[k] ** 2
+    return slopes, variances
 
 
 class Bent(NamedTuple):
@@ -119,15 +128,15 @@ class Bent(NamedTuple):
 
 def bent(zeros: Sequence[Zero]) -> list[Bent]:
     """What the drift of all passes of a rig has besides lines."""
-    bends = np.array([one.bend for one in zeros])
-    # Three degrees of freedom of a stretch are few: those of all passes say how noise remembers.
-    memory, most = np.mean([(one.memory, one.most) for one in zeros], axis=(0, 2))
-    memory = np.maximum(memory, memory.mean())  # some passes of one reading say little of it
-    # Noise that remembers from one block to the next makes them alike: they show less of it. So far
-    # as here slopes of AR(0.5) to AR(0.97) scatter, to 10 %.
-    memory = np.maximum(1.0, memory / (1 - np.minimum(memory / most, _ALIKE)))
-    sizes = np.array([one.bend_uncertainty for one in zeros]) * np.sqrt(memory)
-    sizes = np.maximum(sizes, np.finfo(float).tiny)
+    # Noise is of one kind in all passes, which show more of it than two short stretches.
+    slopes, variances = _slopes([stretch for one in zeros for stretch in one.stretches])
+    slopes, variances = slopes.reshape(-1, 2, 3), variances.reshape(-1, 2, 3)
+    means = np.array([[_of_mean(x.values) for x in one.stretches] for one in zeros])
+    ways = np.array([np.diff([x.foot_x.mean() for x in one.stretches]) for one in zeros])
+    # By how much a zero would miss the other stretch if it went on as in either.
+    bends = ways[:, :, None] * slopes - np.array([one.drift for one in zeros])[:, None]
+    squares = ways[:, :, None] ** 2 * variances + np.sum(means**2, axis=1)[:, None]
+    sizes = np.sqrt(np.maximum(squares, np.finfo(float).tiny))
     mean, of_mean = _weighted(bends, sizes**2)
     alike = _no_chance(mean / np.sqrt(of_mean), mean.size)  # what all passes have shows first
     shows = alike or _no_chance(bends / sizes, bends.size)

@@ -250,7 +250,7 @@ def _free(foot_x: Floats, rig: Rig) -> dict[str, Booleans]:
 
 def _straightened(passes: list[Pass]) -> list[Pass]:
     """The passes without the curve that the drift of all of them has."""
-    known = [one for one in passes if one.fault is None and np.isfinite(one.drawn.bend).all()]
+    known = [one for one in passes if one.fault is None and one.drawn.stretches]
     curves = bent([one.drawn for one in known]) if known else []
     of_pass = {one.name: curve for one, curve in zip(known, curves, strict=True)}
     return [_without(one, of_pass[one.name]) if one.name in of_pass else one for one in passes]

@@ -42,11 +42,11 @@ def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape):
         assert np.sqrt(np.mean(np.square(missed))) > 0.01  # what a line leaves
 
 
-@pytest.mark.parametrize("memory", [0.0, 0.7])
+@pytest.mark.parametrize("memory", [0.0, 0.7, 0.97, 0.99])
 def test_a_straight_drift_stays_a_line(memory):
-    """In noise that remembers, too, of which stretches are as short as they are here: 7 times."""
+    """In noise that remembers for as long as its stretches are, too: 60 of 100 seemed to bend."""
     shown = [passes("line", 10, seed, memory)[1][0].shows for seed in range(40)]
-    assert np.mean(shown) < 0.1
+    assert np.mean(shown) <= 0.05
 
 
 def test_one_stretch_that_drifts_says_so_and_noise_does_not():
@@ -55,4 +55,6 @@ def test_one_stretch_that_drifts_says_so_and_noise_does_not():
     still = zero_of(WAY, noise, only, "pass")
     drifting = zero_of(WAY, noise + 0.6 * WAY, only, "pass")
     assert not still.ahead.any()
-    np.testing.assert_allclose(drifting.ahead, 0.6, rtol=0.3)
+    shown = drifting.ahead[drifting.ahead != 0]
+    assert len(shown) >= 2  # one of three looks like noise that remembers, at 2.4 deviations
+    np.testing.assert_allclose(shown, 0.6, rtol=0.3)
