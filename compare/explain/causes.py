@@ -107,9 +107,14 @@ def physical_faults(
     reference, name = found.reference, found.reference.running
     size_of, unit = reference.running_unit
     x, slope, every = table["at"].to_numpy(), slopes(table, true), np.ones((3, 1))
-    rows = np.stack([reference.values(name) for name in CLAMP_READINGS])
+    places, rows = (
+        reference.running_values,
+        np.stack([reference.values(name) for name in CLAMP_READINGS]),
+    )
     if "phase" in reference.table:
         rows[:, says(reference.table["phase"], "free")] = np.nan
+    if (exact := Resolved.of(reference, x)) is not None:
+        places, rows = exact.swept  # at far more stations than most references have
 
     def displaced(
         text: Callable[[float], str], only: Floats, most: float, rate: float | Floats, at: FootPlace
@@ -117,7 +122,7 @@ def physical_faults(
         """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
         def change(size: float) -> Floats:
-            seen = _between(at(size, x), reference.running_values, rows) / scale[:, None]
+            seen = _between(at(size, x), places, rows) / scale[:, None]
             return np.where(only > 0, seen - true, 0.0)
 
         def acts(size: float, added: Floats, foot_x: Floats) -> Floats:
@@ -143,7 +148,7 @@ def physical_faults(
     for one, felt in zip(np.eye(3), CLAMP_READINGS, strict=True):
         text = f"{felt} lags by {{:+.2e}} {unit} of the clamp's way: its channel is late"
         yield displaced(text.format, one[:, None], 0.1, -way, lambda size, at: at - size * way)
-    if (exact := Resolved.of(reference, x)) is not None:
+    if exact is not None:
         yield from _solved(exact, table, scale)
 
 

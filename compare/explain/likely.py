@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS
 from analytic.from_clamp.noise import scatter
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from compare.explain.causes import slopes
 from compare.explain.one_or_two import CONVINCING, one_or_two
 from compare.judge.allowance import NoiseAllowance
@@ -57,7 +57,8 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         slope = found.reference.running_unit[0] * slopes(table, true)
-        cause = uneven(found, error, slope, jumps, scale) or one_or_two(
+        stations = table["station"].to_numpy()
+        cause = uneven(found, stations, error, slope, jumps, scale) or one_or_two(
             found, table, true, seen, scale, jumps
         )
     if cause is None or cause.startswith("noise"):
@@ -155,6 +156,8 @@ _JUMPING = 0.5  # fraction of the disagreement's square that jumps from station 
 _STEPPED = (0.5, 2.0)  # times the square that rounding to steps leaves, if they are the cause
 _WHOLE = 1e-3  # of a step; so near to a multiple of it
 _STEPS = 200  # at most, over a reading: of more, the rounding is no cause of anything
+_OFTEN = 0.2  # of the readings in contact: so many that repeat the one before are no chance
+_FRESH = 0.3  # times what repeated ones are off, new ones are at most
 _HUM = 0.8  # fraction of the disagreement's square that one frequency must explain
 _TURNS = 8  # periods at least over the sweep: what is slower is a model's own error
 _FINER = 4  # frequencies for each of the sweep's own
@@ -162,12 +165,18 @@ _ALONG = 0.8  # fraction that lies along the readings' slope, if the foot is off
 
 
 def uneven(
-    found: Measurement, error: Floats, slopes: Floats, jumps: Floats, scale: Floats
+    found: Measurement,
+    stations: Integers,
+    error: Floats,
+    slopes: Floats,
+    jumps: Floats,
+    scale: Floats,
 ) -> str | None:
     """What makes errors, shape (3, stations), that differ from station to station."""
     return (
         _unrest(found, error)
         or _stepped(found, error, scale)
+        or _held(found, stations, error)
         or _humming(found, error)
         or _jittering(found, error, slopes)
         or _scattered(found, error, jumps, scale)
@@ -202,6 +211,23 @@ def _stepped(found: Measurement, error: Floats, scale: Floats) -> str | None:
     if not said or not least <= float(np.sum(np.mean(error**2, axis=1))) <= most:
         return None
     return f"readings are quantised: {', '.join(said)} of its largest magnitude"
+
+
+def _held(found: Measurement, stations: Integers, error: Floats) -> str | None:
+    """Readings that are new at some stations only, if those agree."""
+    rows = np.stack([found.candidate.values(name) for name in CLAMP_READINGS])
+    same = np.append(False, (np.diff(rows) == 0).all(axis=0))
+    loaded = found.judged["candidate"].phase != "free"
+    often = float(np.mean(same[loaded]))
+    same = same[stations]
+    if often < _OFTEN or not same.any() or same.all():
+        return None
+    if rms(error[:, ~same]).max(initial=0.0) > _FRESH * rms(error[:, same]).max(initial=0.0):
+        return None
+    return (
+        f"readings are held: {often:.0%} of those in contact repeat the ones before while "
+        f"{found.reference.running} goes on; whatever writes them is slower than the rows"
+    )
 
 
 def _humming(found: Measurement, error: Floats) -> str | None:

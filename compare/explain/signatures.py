@@ -60,6 +60,11 @@ class Resolved:
         same = np.sqrt(np.nanmean(miss**2)) < _SAME
         return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
 
+    @property
+    def swept(self) -> tuple[Floats, Floats]:
+        """Foot positions, ascending, and the clamp readings there, of the case as it is."""
+        return _sweep(self.case)
+
     def change(self, fault: str, size: float) -> Floats | None:
         """What a fault adds to the clamp readings, by its size in the unit of `unit_of`."""
         try:

@@ -86,12 +86,12 @@ def errors(kind, unknowns, draws, seed=0):
 def test_intervals_hold_the_true_values(kind, unknowns):
     """95 % are aimed at; 1.1 % is the standard deviation of that share of 400.
 
-    Observed 92 to 98.5 %: less for noise that hardly forgets, of which one sweep shows little; more
+    Observed 93 to 99 %: less for noise that hardly forgets, of which one sweep shows little; more
     where the zero, which counts as known to 0.1 %, is right.
     """
     found = np.array([*errors(kind, unknowns, 400)])
     held = np.mean(np.abs(found) < 1.96, axis=0)
-    assert np.all(held > 0.90)
+    assert np.all(held > 0.92)
     assert np.all(held < 0.997)
 
 

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from analytic import (
     CLAMP_READINGS,
     SENSED,
+    Beam,
     Case,
     Readings,
     Sweep,
@@ -105,6 +106,18 @@ def test_of_two_that_fit_alike_both_are_named_and_of_three_none():
     assert best_alone([Explanation("a", 0.2), Explanation("c", 0.5)], weigh) == (None, None)
 
 
+@pytest.mark.parametrize("rows", [2, 5])
+def test_readings_that_are_held_are_no_foot_that_jitters(rows):
+    """Every second reading anew was "jitter of foot_x by 1.5e-02 L"."""
+    exact = solve_sweep(named_case("catenary"))
+    held = {n: np.repeat(exact.values(n)[::rows], rows)[: len(exact.table)] for n in CLAMP_READINGS}
+    seen = Readings(exact.table[list(SENSED)].assign(**held), exact.beam, "held")
+    assert compare(exact, seen).likely.startswith(f"readings are held: {1 - 1 / rows:.0%} of those")
+    off = {n: 1.05 * x for n, x in held.items()}
+    seen = Readings(exact.table[list(SENSED)].assign(**off), exact.beam, "held, too stiff")
+    assert "held" not in (compare(exact, seen).likely or "")
+
+
 @pytest.mark.parametrize(("jumps", "noise"), [(0.75, True), (0.3, False)])
 def test_half_of_the_square_has_to_jump_to_be_noise(jumps, noise):
     """Beside a slow wave that is no other cause."""
@@ -197,6 +210,19 @@ def test_a_weight_that_was_forgotten_is_named():
 def test_a_cause_has_its_sign_and_its_size_in_lengths_of_the_vibrissa(made, said):
     """It is of length 2 here."""
     assert re.search(said, str(compare(solved(), made(solved())).likely))
+
+
+@pytest.mark.parametrize("off", [0.01, -0.01])
+def test_an_offset_is_found_past_a_reference_of_few_stations(off):
+    """Next to its snap-off 100 stations are far apart: it was 1.19e-2, with a fifth left."""
+    case = Case(Beam(), circle(0.8, lowest=(0.0, 0.4)), Sweep(100))
+    first, last = case.foot_x[[0, -1]]
+    moved = circle(0.8, lowest=(off, 0.4))
+    seen = solve_sweep(replace(case, profile=moved, sweep=Sweep(100, first, last)))
+    said = compare(solve_sweep(case), Readings(seen.table[list(SENSED)], case.beam, "x")).likely
+    size = re.fullmatch(r"foot_x (\S+) L off, the same at all stations.*", said)[1]
+    assert float(size) == pytest.approx(off, rel=0.01)
+    assert "is left" not in said
 
 
 def test_why_most_stations_are_not_trusted_is_said():
