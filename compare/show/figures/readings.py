@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -175,12 +176,14 @@ def passes_picture(passes: Sequence[Pass]) -> Figure:
     figure, axes = stacked(passes[0].readings)
     for name, ax in axes.items():
         for i, one in enumerate(passes):
-            look = {"color": style.SERIES[i % len(style.SERIES)], "linestyle": ""}
+            # The first is dark, the last light: their order is seen, and none has another's colour.
+            colour = colormaps["viridis"](i / len(passes))
+            look = {"color": colour, "linestyle": "", "alpha": 0.5}
             marker = "." if one.direction == "left" else "x"
             values = one.readings.values(name) / unit(one.readings, name)
             said = style.label(f"{one.name}, to the {one.direction}") if i < _MOST else "_"
             of_foot = foot(one.readings)
-            draw(ax, of_foot, values, label=said, marker=marker, markersize=3.5, **look)
+            draw(ax, of_foot, values, label=said, marker=marker, markersize=2.5, **look)
         ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=style.SMALL)
     key_below(figure, axes["force_x"], 3)
     return figure
