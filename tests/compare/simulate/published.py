@@ -40,7 +40,7 @@ class Published:
 
 def cable(
     size: float, radius: float, bend: float, twist: float, count: int, joint: str, geom: str = "",
-    hand: str = "", **mounted: str,
+    hand: str = "", **mounted: str | float,
 ) -> Published:  # fmt: skip
     """MuJoCo 3's composite, in a body of its own if there are joints between it and the slide."""
     composite = (
@@ -204,6 +204,7 @@ CABLES: dict[str, Callable[[], Published]] = {
     "Playground's cable": lambda: cable(
         1.0, 0.002, 1e7, 6e4, 10, 'damping="0.01" armature="0.001"',
         'mass="0.00035" friction="0.3 0.3 0.3"', option='timestep="0.01"', gravity="0 0 -9.81",
+        hold=100.0,
     ),
 }  # fmt: skip
 CHAINS: dict[str, Callable[[], Published]] = {
