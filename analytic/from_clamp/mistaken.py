@@ -25,7 +25,8 @@ class _Mistake:
     by: str = ""
     factors: dict[str, float] = field(default_factory=dict)
     swapped: tuple[str, ...] = ()
-    explains_much: bool = False  # so that it is named only if nothing else explains the readings
+    # So that it is named only if nothing else explains the readings, of which most need one.
+    explains_much: bool = False
 
     def undone(self, readings: Readings) -> Readings:
         source = dict(zip(CLAMP_READINGS, CLAMP_READINGS, strict=True))
@@ -34,15 +35,15 @@ class _Mistake:
         return replace(readings, table=readings.table.assign(**right))
 
 
-def likely_mistakes(readings: Readings, counted: Booleans) -> list[str]:
-    """What may have been mistaken, if that makes contacts of what is none."""
+def likely_mistakes(readings: Readings, counted: Booleans, most: bool) -> list[str]:
+    """What may have been mistaken, if that makes contacts of what is none, as `most` may be."""
     thin = np.arange(0, len(counted), len(counted) // _LOOKED_AT + 1)
     if len(thin) < 2 or not counted[thin].any():
         return []
     some = replace(readings, table=readings.table.iloc[thin].reset_index(drop=True))
     found: dict[str, _Mistake] = {}
     for one in _mistakes():
-        if one.explains_much and found:
+        if one.explains_much and (found or not most):
             continue
         if judge_phases(one.undone(some)).explained[counted[thin]].mean() >= _EXPLAINS:
             found.setdefault(one.of, one)  # of two sizes of a unit the one that is more common

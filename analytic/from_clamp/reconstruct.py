@@ -130,7 +130,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         raise InputError("vibrissa", "none given", allowed, remedy)
     sizes = f"length {readings.beam.length:g} and rigidity {readings.beam.base_rigidity:g}"
     allowed = f"the one that was measured ({impossible} this one)"
-    of_readings = f"units and signs of {readings.source}{_likely(readings, loaded)}"
+    of_readings = f"units and signs of {readings.source}{_likely(readings, loaded, True)}"
     raise InputError("vibrissa", f"of {sizes}", allowed, f"check its units, and {of_readings}")
 
 
@@ -143,12 +143,12 @@ def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
         return None
     return (
         f"{wrong} of {len(status)} readings under load are of no such vibrissa: check the signs, "
-        f"units and zero of the readings, and the vibrissa{_likely(readings, loaded)}"
+        f"units and zero of the readings, and the vibrissa{_likely(readings, loaded, False)}"
     )
 
 
-def _likely(readings: Readings, loaded: Booleans) -> str:
-    likely = likely_mistakes(readings, loaded)
+def _likely(readings: Readings, loaded: Booleans, most: bool) -> str:
+    likely = likely_mistakes(readings, loaded, most)
     return f"; {LIKELY} {' or '.join(likely)}" if likely else ""
 
 

@@ -67,7 +67,6 @@ def test_swapped_forces_are_named(rig):
         (dict.fromkeys(FORCES, 1e-3), "likely the unit of both forces (1000 times too small)"),
         (dict.fromkeys((*FORCES, "moment_z"), -1.0), "all signs (the vibrissa's action"),
         ({"moment_z": 1e3}, "likely the unit of moment_z (1000 times too large)"),
-        ({"force_x": 1e-3}, "likely the unit of force_x (1000 times too small)"),
     ],
 )
 def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):

@@ -130,7 +130,7 @@ def test_a_fit_that_is_bad_because_forces_are_swapped_says_so(folder, tmp_path):
     swapped = solve_sweep(case).table.rename(columns={"force_x": "force_y", "force_y": "force_x"})
     swapped[list(SENSED)].to_csv(tmp_path / "rig.csv", index=False)
     done = vibrissa("calibrate", "rig.csv", folder / "object.toml", cwd=tmp_path)
-    done.ended(1, "likely force_x and force_y, swapped")
+    done.refused("likely force_x and force_y, swapped")
 
 
 @pytest.mark.slow
