@@ -93,6 +93,8 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     draw(upper, *points, label=style.label(candidate.source), **dots(comparison))
     upper.set_title(reading_label(reference, name), fontsize=style.LARGE)
     lower.axhline(0, color=style.INK, linewidth=0.8)
+    if comparison.alignment.table.empty:
+        lower.set_yticks([0.0])  # else a scale of 1e-17
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(foot_label(reference))
     lower.ticklabel_format(axis="y", scilimits=(-2, 2))
