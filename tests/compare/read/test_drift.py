@@ -24,11 +24,12 @@ def passes(shape, count, seed, memory=0.0):
     return zeros, bent(zeros), true
 
 
+@pytest.mark.parametrize("rigs", [3, pytest.param(30, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape):
-    """In the middle of the way, where a line misses a curve most; 10 passes, 30 rigs."""
+def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape, rigs):
+    """In the middle of the way, where a line misses a curve most; 10 passes a rig."""
     errors, missed = [], []
-    for seed in range(30):
+    for seed in range(rigs):
         zeros, curves, true = passes(shape, 10, seed)
         middle = ROWS // 2
         for zero, curve in zip(zeros, curves, strict=True):
@@ -42,10 +43,11 @@ def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape):
         assert np.sqrt(np.mean(np.square(missed))) > 0.01  # what a line leaves
 
 
+@pytest.mark.parametrize("rigs", [3, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("memory", [0.0, 0.7, 0.97, 0.99])
-def test_a_straight_drift_stays_a_line(memory):
+def test_a_straight_drift_stays_a_line(memory, rigs):
     """In noise that remembers for as long as its stretches are, too: 60 of 100 seemed to bend."""
-    shown = [passes("line", 10, seed, memory)[1][0].shows for seed in range(40)]
+    shown = [passes("line", 10, seed, memory)[1][0].shows for seed in range(rigs)]
     assert np.mean(shown) <= 0.05
 
 
