@@ -54,6 +54,16 @@ def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, f
         require_beam(reconstruct(wrong), wrong)
 
 
+def test_the_unit_of_one_force_is_named_if_nothing_else_explains_the_readings(rig):
+    """Without a size: 1000 times too small and a million times are the same to a tip."""
+    wrong = mistaken(rig, force_x=1e-3)
+    with pytest.raises(InputError, match=r"likely the unit of force_x$"):
+        require_beam(reconstruct(wrong), wrong)
+    wrong = mistaken(rig, moment_z=1e-3)
+    with pytest.raises(InputError, match=r"likely the unit of moment_z \(1000 times too small\)$"):
+        require_beam(reconstruct(wrong), wrong)
+
+
 def test_swapped_forces_are_named(rig):
     x, y = (rig.values(name) for name in FORCES)
     wrong = replace(rig, table=rig.table.assign(force_x=y, force_y=x))
