@@ -13,7 +13,8 @@ from analytic.problem.readings import Readings
 
 _LOOKED_AT = 200  # stations; more say nothing new
 _EXPLAINS = 0.95  # of the stations: a few lie between two phases, or are spikes
-_UNITS = (1e3, 1e6, 9.80665)  # by which units are mistaken: milli, micro, kgf and N
+_UNITS = (9.80665, 1e3, 1e6)  # by which units are mistaken: kgf and N, milli, micro
+_OF_A_SENSOR = _UNITS[:2]  # by which those of its two forces differ
 _FORCES = CLAMP_READINGS[:2]
 
 
@@ -72,11 +73,13 @@ def _mistakes() -> Iterator[_Mistake]:
 
 def _of_one_force() -> Iterator[_Mistake]:
     for name in _FORCES:
-        yield from _of_units((name,), name)
+        yield from _of_units((name,), name, _OF_A_SENSOR)
 
 
-def _of_units(names: tuple[str, ...], called: str) -> Iterator[_Mistake]:
+def _of_units(
+    names: tuple[str, ...], called: str, units: tuple[float, ...] = _UNITS
+) -> Iterator[_Mistake]:
     of = f"the unit of {called}"
-    for unit in _UNITS:
+    for unit in units:
         for factor, way in ((1 / unit, "large"), (unit, "small")):
             yield _Mistake(of, f" ({unit:.4g} times too {way})", dict.fromkeys(names, factor))

@@ -55,12 +55,19 @@ def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, f
 
 
 def test_the_unit_of_one_force_is_named_if_nothing_else_explains_the_readings(rig):
-    """Without a size: 1000 times too small and a million times are the same to a tip."""
-    wrong = mistaken(rig, force_x=1e-3)
-    with pytest.raises(InputError, match=r"likely the unit of force_x$"):
+    """A force that is made large enough is of a tip, whatever the other one is."""
+    wrong = mistaken(rig, force_y=9.80665)
+    with pytest.raises(InputError, match=r"likely the unit of force_y \(9.807 times too large\)$"):
         require_beam(reconstruct(wrong), wrong)
     wrong = mistaken(rig, moment_z=1e-3)
     with pytest.raises(InputError, match=r"likely the unit of moment_z \(1000 times too small\)$"):
+        require_beam(reconstruct(wrong), wrong)
+
+
+def test_a_size_that_is_not_the_only_one_to_explain_the_readings_is_not_stated(rig):
+    """Of a vibrissa that is next to unloaded, forces are too small by ten or by a thousand."""
+    wrong = mistaken(rig, force_y=1e-3)
+    with pytest.raises(InputError, match=r"likely the unit of both forces$"):
         require_beam(reconstruct(wrong), wrong)
 
 

@@ -13,11 +13,12 @@ SHAPES = {
     "warming": lambda u: 0.06 * (1 - np.exp(-4 * u)),
     "there and back": lambda u: 0.12 * u * (1 - u),
 }
+WEAK = {"hardly bent": lambda u: 0.03 * u + 0.05 * u * (1 - u)}
 
 
 def passes(shape, count, seed, memory=0.0):
     """Zeros of passes without a contact, and what is off the truth in the middle of each."""
-    rng, true = np.random.default_rng(seed), SHAPES[shape](WAY)
+    rng, true = np.random.default_rng(seed), (SHAPES | WEAK)[shape](WAY)
     white = rng.standard_normal((count, 3, ROWS)) * np.sqrt(1 - memory**2)
     values = true + NOISE * lfilter([1.0], [1.0, -memory], white)
     zeros = [zero_of(WAY, one, FREE, "pass") for one in values]
@@ -41,6 +42,19 @@ def test_what_is_taken_off_is_off_by_no_more_than_is_said(shape, rigs):
     if shape != "line":
         assert all(curve.shows for curve in curves)
         assert np.sqrt(np.mean(np.square(missed))) > 0.01  # what a line leaves
+
+
+@pytest.mark.slow
+def test_a_bend_too_weak_to_be_seen_is_within_what_is_said():
+    errors = []
+    for seed in range(24):
+        zeros, curves, true = passes("hardly bent", 3, seed)
+        for zero, curve in zip(zeros, curves, strict=True):
+            if not curve.shows:
+                known = np.hypot(zero.uncertainty, 2 * curve.uncertainty)
+                errors.append((zero.line - true)[:, ROWS // 2] / known)
+    assert len(errors) > 30
+    assert np.mean(np.square(errors)) < 1.0
 
 
 @pytest.mark.parametrize("rigs", [3, pytest.param(40, marks=pytest.mark.slow)])
