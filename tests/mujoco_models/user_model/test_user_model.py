@@ -39,6 +39,10 @@ def test_a_sound_model_agrees_with_the_closed_form():
     assert worst(STEEL, moved) < 6e-3
     # Three bounce after the first contact, each losing it once; one at the release.
     assert (moved.table["status"] != "ok").sum() <= 4
+    # Where it touches is known far better than to a link.
+    exact = solve_sweep(STEEL)
+    off = moved.values("contact_arc_length") - exact.values("contact_arc_length")
+    assert np.nanmax(np.abs(off[exact.table["phase"] == "tangent"])) < 0.2 * 0.1 / 20
 
 
 @pytest.mark.slow
