@@ -137,7 +137,19 @@ def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
         return 0, 0
     width = max(widths, key=widths.count)
     good = [len(row) == width and more > 0 for row, more in zip(rows, balance, strict=True)]
-    return good.index(True), sum(compress(balance, good))
+    begin = good.index(True)
+    numbers = [dialect.weight(cell) > 0 for cell in rows[begin]]
+    while begin and _lacks_some(dialect, rows[begin - 1], numbers):
+        begin -= 1
+    return begin, sum(compress(balance, good))
+
+
+def _lacks_some(dialect: Dialect, row: list[str], numbers: list[bool]) -> bool:
+    """Whether a row has numbers and empty cells where the first full one has numbers."""
+    if len(row) != len(numbers):
+        return False
+    weights = [dialect.weight(cell) for cell, number in zip(row, numbers, strict=True) if number]
+    return 1 in weights and -1 not in weights
 
 
 def _names(dialect: Dialect, before: list[str], width: int) -> list[str]:
