@@ -10,6 +10,7 @@ from analytic.from_clamp.noise import (
     checked_noise,
     largest,
     reading_noise,
+    resting_noise,
     zero_uncertainty,
 )
 from analytic.problem.arrays import Booleans, Floats, Integers
@@ -133,9 +134,13 @@ def measured_under_load(
     known = reading_noise(readings) if stated is None else stated
     spread = np.array([known.get(name, 0.0) for name in SENSED])
     least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
-    of_free = readings.provenance.get("free_noise", {})
-    free = np.array([of_free.get(name, 0.0) for name in CLAMP_READINGS])
     spread[1:] = np.maximum(spread[1:], least)
+    of_free = readings.provenance.get("free_noise")
+    if of_free is None and stated is None:  # no rig says where it is free
+        values = np.stack([readings.values(name) for name in CLAMP_READINGS])
+        free = resting_noise(values[:, readings.trusted], spread[1:])
+    else:
+        free = np.array([(of_free or {}).get(name, 0.0) for name in CLAMP_READINGS])
     x = readings.values("foot_x")
     force = np.hypot(
         readings.values("force_x") + carried[0], readings.values("force_y") + carried[1]
