@@ -30,6 +30,7 @@ def test_every_limit_has_a_reason():
     assert Tolerances(rms=1e-3).limits()["rms"].reason == "asked for by the caller"
 
 
+@pytest.mark.slow
 def test_limits_from_a_file(tmp_path):
     (tmp_path / "limits.toml").write_text(FILE)
     limits = read_tolerances(tmp_path / "limits.toml", Tolerances)

@@ -86,6 +86,7 @@ def test_a_mocap_foot_has_no_speed_and_chatters(tmp_path):
     assert chattering[1] > 8
 
 
+@pytest.mark.slow
 def test_the_clamp_is_read_in_whatever_frame_the_sensor_has(tmp_path, plain):
     """A turned site, off the clamp: the readings are carried to the clamp and turned back."""
     other = swept(tmp_path, Chain(site='euler="0.3 -0.4 0.5" pos="0.01 -0.1 0"'), **OURS)
@@ -121,6 +122,7 @@ def test_a_station_that_touches_another_thing_says_so(tmp_path, plain, chain):
     assert other[first : first + 10].all()
 
 
+@pytest.mark.slow
 def test_another_vibrissa_that_the_sensors_do_not_feel_is_no_other_thing(tmp_path):
     """Two on one carriage, each on a body of its own: the object meets the other one, too."""
     path = Chain(foot="").write(tmp_path)
@@ -134,6 +136,7 @@ def test_another_vibrissa_that_the_sensors_do_not_feel_is_no_other_thing(tmp_pat
     assert "touches another" not in set(found["status"])
 
 
+@pytest.mark.slow
 def test_sensors_are_added_at_a_site(tmp_path, plain):
     """In memory, and they read what the model's own ones there would."""
     without = Chain(sensors="").write(tmp_path)

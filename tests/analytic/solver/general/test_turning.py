@@ -69,7 +69,9 @@ def way_of(rows):
     return [ClampPath(1.5 - 2 * p, 0 * p, -0.5 + 0.8 * p)], inner
 
 
-@pytest.mark.parametrize("case", sorted(set(ROWS["case"])))
+@pytest.mark.parametrize(
+    "case", [pytest.param("dev0", marks=pytest.mark.slow), *sorted({*ROWS["case"]} - {"dev0"})]
+)
 def test_references(case):
     rows = ROWS[ROWS["case"] == case]
     profile = PROFILES[rows["profile"].iloc[0]]
