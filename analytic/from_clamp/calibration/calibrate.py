@@ -187,7 +187,7 @@ def calibrate(
         one.require_sweep("a calibration")
     names = checked_unknowns(unknowns, case)
     for one in passes:
-        check_size(one, case)
+        check_size(one, case.beam)
     measured = Measured.of(passes, case.support.carried(case.beam), noise, len(names))
     if LAG in names and len(set(measured.ways)) < 2:
         remedy = "leave it out, or take passes to the other side, too"

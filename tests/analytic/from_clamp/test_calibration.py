@@ -365,7 +365,7 @@ def changed(**columns) -> Readings:
          "natural_curvature, which varies"),
         (READINGS, replace(SOFT, beam=Beam(radius=0.0)), ["tip_radius"], "tip_radius of a vib"),
         (changed(force_x=0.0, force_y=0.0, moment_z=0.0), SOFT, ["friction"], "never touches"),
-        (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of the readings = zero"),
+        (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of analytic = zero"),
         (changed(force_x=1e12 * READINGS.values("force_x")), SOFT, ["friction"], "same units"),
         pytest.param(changed(foot_x=50 * READINGS.values("foot_x")), SOFT, ["friction"],
                      "does not touch", marks=pytest.mark.slow),

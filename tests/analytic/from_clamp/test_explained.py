@@ -51,6 +51,16 @@ def test_noise_that_remembers_is_no_fault_of_the_case(memory):
     assert angle.lowest < LEANING.clamp_angle < angle.highest
 
 
+def test_files_without_a_rigs_word_show_their_noise_where_nothing_touches():
+    """Of AR(0.9) six of six right rigs were refused: it left 4 times what jumps between rows."""
+    first, last = UPRIGHT.foot_x[[0, -1]]
+    far = replace(UPRIGHT, sweep=Sweep(400, start=first + 0.5, stop=last - 0.3))
+    seen = passes(far, np.random.default_rng(7), 0.9, 1)[0]
+    seen.provenance.pop("free_noise")
+    assert calibrate(seen, UPRIGHT).explains
+    assert not calibrate(seen, replace(UPRIGHT, profile=circle(0.3, (0.05, 0.75)))).explains
+
+
 @pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.slow), 0.9])
 def test_another_object_is_no_noise_that_remembers(memory):
     wide = replace(UPRIGHT, profile=circle(0.3, (0.05, 0.75)))

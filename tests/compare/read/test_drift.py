@@ -74,3 +74,10 @@ def test_one_stretch_that_drifts_says_so_and_noise_does_not():
     shown = drifting.ahead[drifting.ahead != 0]
     assert len(shown) >= 2  # one of three looks like noise that remembers, at 2.4 deviations
     np.testing.assert_allclose(shown, 0.6, rtol=0.3)
+
+
+def test_what_rounding_leaves_is_no_curve():
+    """Zeros that stand still in all their digits "drifted along a curve" by 1e-18."""
+    load = np.interp(WAY, [0.2, 0.5, 0.8], [0.0, 1.0, 0.0])
+    zeros = [zero_of(WAY, np.tile(load + x, (3, 1)), FREE, "pass") for x in (0.1, 0.3)]
+    assert not any(one.shows for one in bent(zeros))

@@ -55,6 +55,24 @@ def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
     assert_same(read_measured(path, beam=BEAM, columns=columns))
 
 
+def test_a_clock_has_no_unit(tmp_path):
+    """For hh:mm:ss the line of units was taken for names: "column 'stage' missing"."""
+    rows = TABLE.assign(t="09:00:00.010")[["t", *TABLE.columns]].to_csv(sep=";", index=False)
+    head, rest = rows.split("\n", 1)
+    (tmp_path / "rig.csv").write_text(f"Run;7;;;\n{head}\nhh:mm:ss;m;N;N;N m\n{rest}")
+    beam = Beam(si=True)
+    assert_same(read_measured(tmp_path / "rig.csv", beam=beam, columns=COLUMNS))
+
+
+def test_rows_that_lack_numbers_may_come_first(tmp_path):
+    """With a text in each row they were taken for names: "column 'stage' missing"."""
+    table = TABLE.assign(run="p1")[["run", *TABLE.columns]]
+    table.loc[:4, ["Fx", "Fy", "Mz"]] = np.nan
+    table.to_csv(tmp_path / "rig.csv", index=False, sep=";")
+    found = read_measured(tmp_path / "rig.csv", beam=BEAM, columns=COLUMNS)
+    assert (len(found.table), int(found.trusted.sum())) == (40, 35)
+
+
 def test_tables_and_units():
     columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
     expected = TABLE * [1e-3, 1e-3, 1e-3, 1e-6]
