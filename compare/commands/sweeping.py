@@ -35,9 +35,10 @@ AnyReadings: TypeAlias = Readings | SpatialReadings
 _MEANINGS = {
     "touches again": ": another part of the vibrissa touches the object, or would lie in it",
     "touches another": ": the vibrissa touches more than the object, or the object more than it",
-    "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
+    "chattering": ": the contact was lost more than once, or for 5 % of a station's way; "
+    "with friction, take cone elliptic and impratio 100",
     "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
-    "impratio 100, a faster foot, or harder contacts in shorter steps",
+    "cone elliptic with impratio 100, a faster foot, or harder contacts in shorter steps",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",

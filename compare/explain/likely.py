@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import CLAMP_READINGS
-from analytic.from_clamp.noise import scatter
+from analytic.from_clamp.noise import largest, reading_noise, scatter
 from analytic.problem.arrays import Floats, Integers
 from compare.explain.causes import slopes
 from compare.explain.one_or_two import CONVINCING, one_or_two
@@ -17,6 +17,7 @@ from compare.sense.record import direction
 
 _FEWEST = 10  # stations
 _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
+_HIDES = 0.1  # of the reference's largest force; noise of one component
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -77,6 +78,15 @@ def _untouched(found: Measurement) -> str | None:
         return None
     touching = (table["phase"] != "free").to_numpy() if "phase" in table else np.zeros_like(idle)
     if (idle & touching).any():
+        noise = reading_noise(found.candidate)
+        jumps = {n: noise[n] / largest(found.reference.values(n)) for n in CLAMP_READINGS[:2]}
+        worst = max(jumps, key=jumps.__getitem__)
+        if jumps[worst] > _HIDES:
+            return (
+                f"{worst} jumps from station to station by {jumps[worst]:.0%} of the reference's "
+                "largest, and hides any load: what the sensor is on swings, or its readings are "
+                "noise"
+            )
         return (
             f"the clamp reads no load, though the candidate records a contact at "
             f"{(idle & touching).sum()} stations: the sensor measures something else, or nothing"

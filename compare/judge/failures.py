@@ -220,8 +220,8 @@ def _contact(found: Measurement) -> Iterator[Failure]:
     if counts["compared"]:
         said = f"all {counts['compared']} stations in contact in both are next to the snap-off"
     elif counts["one_free"] and not (found.judged["candidate"].phase == "").all():
-        of_all = f"{touching} stations where the reference's does"
-        said = f"the candidate's clamp reads a load at none of the {of_all}"
+        of_all = f"{touching} stations where the reference's is loaded"
+        said = f"the candidate's clamp reads no load above its noise at any of the {of_all}"
     todo = "sweep a stretch where both touch, or see why stations are not trusted"
     yield Failure("contact", said, todo, weight=_FIRST)
 

@@ -137,7 +137,11 @@ def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
         return 0, 0
     width = max(widths, key=widths.count)
     good = [len(row) == width and more > 0 for row, more in zip(rows, balance, strict=True)]
+    numbered = [right and dialect.weight(row[0]) > 0 for row, right in zip(rows, good, strict=True)]
     begin = good.index(True)
+    if 2 * sum(numbered) > sum(good):  # "Samples 9 9 9" of a head is none; texts come after it
+        first = numbered.index(True)
+        begin = first if min(balance[begin:first], default=0) < 0 else begin
     numbers = [dialect.weight(cell) > 0 for cell in rows[begin]]
     while begin and _lacks_some(dialect, rows[begin - 1], numbers):
         begin -= 1

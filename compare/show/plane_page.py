@@ -36,6 +36,15 @@ from compare.show.verdict import (
     worst_reading,
 )
 
+# Why a station is not compared, where the reason's name alone does not say it.
+_BECAME = {
+    "free": "free in both sweeps",
+    "one_free": "free in one of the two sweeps",
+    "outside": "beyond the reference",
+    "reference_coarse": "where the reference's stations are too far apart",
+    "between_phases": "between two phases of the reference",
+}
+
 
 def plane_document(
     comparison: Comparison, budget: Budget | None = None, film: Film | None = None
@@ -127,7 +136,9 @@ def _apart(comparison: Comparison) -> Iterator[Block]:
     )
     yield from common.apart_table(comparison)
     counts = comparison.alignment.counts.items()
-    counted = [(words(why), str(n)) for why, n in counts if n or why == "compared"]
+    counted = [
+        (_BECAME.get(why, words(why)), str(n)) for why, n in counts if n or why == "compared"
+    ]
     if apart := comparison.alignment.counts["compared"] - comparison.stations:
         counted.insert(1, ("of these just before the snap-off: not in rms and max", str(apart)))
     removed = [("offset of the candidate's foot", _offset(comparison) or "none")]

@@ -29,7 +29,7 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 CASE_MARK = "# Written by `vibrissa inspect --write`: the vibrissa"
 """The first line of a case file that is not a user's own."""
-_ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step
+_ROUNDS = 5  # EI; a contact as hard as the step lets it; its inertia goes with the step
 _UNTIL = ", until it would leave its plane"
 _CIRCLE = 0.8  # L; its radius
 _STATIONS = 21  # of a varying EI
@@ -54,7 +54,7 @@ class Fixed:
         left = self.inspection.faults
         if left:
             faults = f"{len(left)} faults are" if len(left) > 1 else "1 fault is"
-            yield f"  {faults} left, with which no error is expected; by hand:"
+            yield f"  {faults} left, to fix by hand; how far it is off can then be said:"
         for fault in left:
             yield f"  {'; '.join(filter(None, (f'{fault.subject}: {fault.text}', fault.remedy)))}"
         if self.inspection.sound:
@@ -69,7 +69,10 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
     now = model
     files: tuple[Path, ...] = ()
     for _ in range(_ROUNDS):
-        wanted = dict.fromkeys(edit for fault in inspection.faults for edit in fault.edits)
+        faults = inspection.faults
+        # What a contact and a step are to be goes with EI, by orders where its unit was another.
+        first = [] if done else [one for one in faults if one.subject == "EI" and one.edits]
+        wanted = dict.fromkeys(edit for fault in first or faults for edit in fault.edits)
         new = [
             edit.of(model, now) if isinstance(edit, Edit) else edit
             for edit in wanted

@@ -17,6 +17,7 @@ from compare.simulate.rigidity import (
     clamp_stiffness,
     counted_twice,
     elastica_error,
+    smooth_rigidity,
 )
 from mujoco_models import OwnModel, inspect_model
 from mujoco_models.inspect.measured import MeasuredBeam
@@ -60,7 +61,9 @@ class Inspection:
         yield "vibrissa", f"{len(found.joints)} joints, {len(found.geoms)} geoms on {found.foot!r}"
         yield "length", f"{length:.6g}"
         yield "radius", " to ".join(f"{x:.4g}" for x in dict.fromkeys((radii[0], radii[-1])))
-        yield "EI of its joints", f"{as_intended(found):.6g}"
+        modulus = 4 * smooth_rigidity(found, np.zeros(1))[0] / (np.pi * radii[0] ** 4)
+        means = f"as if round and solid, of E = {modulus:.2g}"
+        yield "EI of its joints", f"{as_intended(found):.6g}, {means}"
         curved = as_intended(found) / at_its_tip(found)  # the tip of an arc moves by less
         yield "EI of its tip", f"{found.tip_rigidity * curved:.6g} under a small force"
         error = elastica_error(found)

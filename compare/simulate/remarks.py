@@ -156,8 +156,10 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     ):
         off = measured / wanted - 1
         if abs(off) > allowed:
-            yield Remark("fault", what, f"{measured:.6g}, which is {abs(off):.1%} "
-                         f"{'more' if off > 0 else 'less'} than stated ({wanted:.6g})",
+            far = f"{abs(off):.1%} {'more' if off > 0 else 'less'} than stated"
+            if not 0.1 < off + 1 < 10:
+                far = f"{off + 1:.2g} times what is stated: in another unit?"
+            yield Remark("fault", what, f"{measured:.6g}, which is {far} ({wanted:.6g})",
                          edits=edits)  # fmt: skip
     middles = np.array([geom.middle for geom in found.geoms])
     wanted_radii = stated.radius_at(np.clip(middles, 0, stated.length))

@@ -113,11 +113,13 @@ class SteppedModel(ABC):
         decay = np.where(direct, -damping, 2 / (motion.solimp * np.where(direct, 1.0, stiffness)))
         longest = 1 / float(decay.max())
         if motion.timestep > longest:
+            soft = 0.9 * longest * (motion.stiffness / 1e3) ** 0.5  # critical: damping by its root
+            both = f"state [motion] contact_stiffness = 1e3 and timestep = {soft:.2g}"
             raise InputError(
                 "motion.timestep",
                 motion.timestep,
                 f"at most {longest:.2g} T1 with friction and contacts as stiff as these",
-                "shorten it, or give a lower contact_stiffness: with 0.002 T1, 1e3 is usual",
+                both if motion.solref is None else "shorten it, or give a slower solref",
             )
         self.model.geom_condim[geoms] = 3
         self.model.geom_friction[geoms, 0] = motion.friction

@@ -15,7 +15,10 @@ _REMEDIES = (
     (r"flex with general attachments", "a flex that is a beam needs MuJoCo 4"),
     (r"plugin|composite", "only MuJoCo 3 has composite cables: pip install 'mujoco==3.17.*'"),
     (r"opening file|resource", "put its files where it says, or correct meshdir"),
-    (r"mass and inertia", "give every moving body a mass"),
+    (
+        r"mass and inertia",
+        'give each moving body a mass; to one too thin, <compiler boundinertia="2e-15"/>',
+    ),
 )
 
 

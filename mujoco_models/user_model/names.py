@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from mujoco_models.user_model.shipped import find_model
+
 ContactKind: TypeAlias = Literal["own", "ours"]
 
 
@@ -13,8 +15,8 @@ class OwnModel:
 
     Attributes
     ----------
-    file : Path
-        MJCF or URDF, in the units of the case.
+    file : str or Path
+        MJCF or URDF, in the units of the case, or the name of a shipped model.
     foot, force, torque, geoms, site : str or None
         As `mujoco_models.inspect_model` takes them; what is None is looked for.
     contact : str
@@ -38,3 +40,7 @@ class OwnModel:
     damping: float = 1.0
     stiffness: float = 1.0
     solver: Literal["own", "newton"] = "own"
+
+    def __post_init__(self) -> None:
+        """A name will do for a file."""
+        object.__setattr__(self, "file", find_model(self.file))

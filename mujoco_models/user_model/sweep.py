@@ -22,6 +22,7 @@ from mujoco_models.settings import Settings
 from mujoco_models.user_model.model import UserModelInMotion
 from mujoco_models.user_model.names import OwnModel
 
+_LONGEST = 0.1  # of the first period; a time step, as of `Motion`
 _ALIKE = 0.1  # relative; a length that differs by more is in other units, or of another vibrissa
 
 
@@ -86,6 +87,14 @@ def _check(case: Case, measured: MeasuredBeam) -> None:
             f"{measured.length:.6g}",
             f"that of the case, {case.beam.length:.6g}, but for a tenth",
             guess,
+        )
+    step, longest = measured.timestep, _LONGEST * measured.period
+    if step > longest:
+        raise InputError(
+            "time step of the model",
+            f"{step:.4g}, {step / measured.period:.2g} of its first period",
+            f"at most {longest:.3g}, a tenth of it",
+            "shorten it, or see by `vibrissa inspect` whether it is as stiff as you meant",
         )
     for word, sensed in (("force", measured.force), ("torque", measured.torque)):
         if sensed is None:

@@ -42,7 +42,7 @@ _MOST = 12  # names in a legend
 _PANEL = (4.8, 4.0)  # inches
 # To measure the texts of each picture would take longer than to draw it.
 _ROW = {"left": 0.07, "right": 0.99, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25}
-_CRITERION = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
+_CRITERION = {"left": 0.107, "right": 0.99, "top": 0.95, "bottom": 0.15, "hspace": 0.08}
 _AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
 
 
@@ -93,6 +93,8 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     draw(upper, *points, label=style.label(candidate.source), **dots(comparison))
     upper.set_title(reading_label(reference, name), fontsize=style.LARGE)
     lower.axhline(0, color=style.INK, linewidth=0.8)
+    if comparison.alignment.table.empty:
+        lower.set_yticks([0.0])  # else a scale of 1e-17
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(foot_label(reference))
     lower.ticklabel_format(axis="y", scilimits=(-2, 2))
@@ -129,6 +131,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
         shade_reference(ax, comparison)
         ax.axhline(expected, color=style.GREY, linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"(2 force_y - moment_z$^2$) / $2f$" + "\nzero in Phase B")
+    axes[0].ticklabel_format(axis="y", scilimits=(-1, 2))
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
     axes[1].set_xlabel(
         f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"

@@ -144,6 +144,16 @@ def test_who_touches_is_not_said_never_to_touch(made, said):
     assert ("never touches" in found.likely) == (made is mute)
 
 
+def test_a_load_that_noise_hides_is_no_sensor_without_one():
+    """A soft drive swings under the sensor: force_x alone jumped, and "the clamp reads no load"."""
+    exact = solved()
+    force = exact.values("force_x")
+    jumps = 2 * np.abs(force).max() * np.random.default_rng(1).standard_normal(len(force))
+    found = compare(exact, changed(exact, force_x=force + jumps, phase=exact.table["phase"]))
+    assert found.likely.startswith("force_x jumps from station to station by ")
+    assert "reads no load above its noise" in str(found)
+
+
 @pytest.mark.slow
 def test_a_contact_ends_early_only_where_it_agrees_up_to_there():
     exact = solve_sweep(named_case("parabola"))

@@ -17,6 +17,7 @@ from analytic import (
 )
 from analytic.problem.support import Support
 from compare import read_measured, read_sweeps
+from compare.read.dialect import read_text_table
 from tests.conftest import exact_sweep
 
 FOOT = np.linspace(1, -1, 40)
@@ -71,6 +72,16 @@ def test_rows_that_lack_numbers_may_come_first(tmp_path):
     table.to_csv(tmp_path / "rig.csv", index=False, sep=";")
     found = read_measured(tmp_path / "rig.csv", beam=BEAM, columns=COLUMNS)
     assert (len(found.table), int(found.trusted.sum())) == (40, 35)
+
+
+def test_numbers_above_the_names_are_no_rows(tmp_path):
+    """As LabVIEW writes them; under the names, a first cell that is no number is a row's."""
+    head = "".join(f"{name}\t9\t9\t9\n" for name in ("Samples", "X0", "Delta_X"))
+    data = TABLE.to_csv(sep="\t", index=False)
+    (tmp_path / "x.txt").write_text(f"Channels\t3\n{head}***End***\t\n{data}")
+    assert_same(read_measured(tmp_path / "x.txt", beam=BEAM, columns=COLUMNS))
+    (tmp_path / "x.csv").write_text("foot_x,force_x,moment_z\nERR,1,2\n0.1,1,2\n0.2,1,2\n")
+    assert len(read_text_table(tmp_path / "x.csv").frame) == 3
 
 
 def test_tables_and_units():

@@ -7,13 +7,14 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cbook import is_math_text
 
 from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
 from compare import compare
 from compare.sense.phases import classify
 from compare.show.figures.over_foot import foot, with_fold
-from compare.show.figures.readings import reading_panel
+from compare.show.figures.readings import phase_criterion, reading_panel
 from compare.show.report import write_report
 from compare.show.style import label
 from tests.compare.show import sweeps
@@ -62,6 +63,18 @@ def test_a_mirrored_sweep_has_the_mirrored_curve():
     )
     np.testing.assert_allclose(other_x, -x, atol=1e-12)
     np.testing.assert_allclose(other_y, y, atol=1e-9)
+
+
+def test_all_text_is_on_the_picture(comparison):
+    judged = {
+        side: replace(one, criterion=4e-3 * np.sin(np.arange(len(one.criterion))))
+        for side, one in comparison.judged.items()
+    }
+    figure = phase_criterion(replace(comparison, judged=judged))
+    FigureCanvasAgg(figure)
+    box = figure.get_tightbbox()
+    assert 0 <= box.x0 < box.x1 <= figure.bbox_inches.x1
+    assert 0 <= box.y0 < box.y1 <= figure.bbox_inches.y1
 
 
 @given(st.text())

@@ -251,7 +251,7 @@ def test_a_model_that_is_softer_disagrees_by_as_much(tmp_path):
 def test_files_are_left_alone(tmp_path):
     path = Chain().write(tmp_path)
     before = path.read_bytes(), path.stat().st_mtime_ns
-    simulate_model(UNIT, OwnModel(path, contact="ours"), FAST, COARSE)
+    simulate_model(UNIT, OwnModel(str(path), contact="ours"), FAST, COARSE)
     assert (path.read_bytes(), path.stat().st_mtime_ns) == before
     assert [*tmp_path.iterdir()] == [path]
 
@@ -266,6 +266,7 @@ def test_files_are_left_alone(tmp_path):
         (Chain(sensors='<force name="F" site="clamp"/>'), {}, "torque sensor .* missing"),
         (Chain(foot=""), {}, "touch|can be moved|exclude"),
         (Chain(), {"foot": "hand"}, "--foot = 'hand'"),
+        (Chain(rigidity=1e4), {}, "^time step of the model = 0.01, 1 of .* at most 0.000999"),
     ],
 )
 def test_what_is_wrong_is_one_line(tmp_path, chain, names, said):
