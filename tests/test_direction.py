@@ -95,6 +95,7 @@ def test_hysteresis(name):
         assert loaded and not free
 
 
+@pytest.mark.slow
 def test_mujoco_shows_the_hysteresis(simulated_rightward):
     """Each sweep lets go beyond the place where the other one touches, and goes on, free."""
     leftward = simulated_sweep("two-circles")

@@ -1,6 +1,6 @@
 """Mistakes of signs, axes and units that would explain readings of no such vibrissa."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
@@ -13,7 +13,8 @@ from analytic.problem.readings import Readings
 
 _LOOKED_AT = 200  # stations; more say nothing new
 _EXPLAINS = 0.95  # of the stations: a few lie between two phases, or are spikes
-_UNITS = (1e3, 1e6, 9.80665)  # by which units are mistaken: milli, micro, kgf and N
+_UNITS = (9.80665, 1e3, 1e6)  # by which units are mistaken: kgf and N, milli, micro
+_OF_A_SENSOR = _UNITS[:2]  # by which those of its two forces differ
 _FORCES = CLAMP_READINGS[:2]
 
 
@@ -25,8 +26,6 @@ class _Mistake:
     by: str = ""
     factors: dict[str, float] = field(default_factory=dict)
     swapped: tuple[str, ...] = ()
-    # So that it is named only if nothing else explains the readings, of which most need one.
-    explains_much: bool = False
 
     def undone(self, readings: Readings) -> Readings:
         source = dict(zip(CLAMP_READINGS, CLAMP_READINGS, strict=True))
@@ -41,13 +40,20 @@ def likely_mistakes(readings: Readings, counted: Booleans, most: bool) -> list[s
     if len(thin) < 2 or not counted[thin].any():
         return []
     some = replace(readings, table=readings.table.iloc[thin].reset_index(drop=True))
-    found: dict[str, _Mistake] = {}
-    for one in _mistakes():
-        if one.explains_much and (found or not most):
-            continue
-        if judge_phases(one.undone(some)).explained[counted[thin]].mean() >= _EXPLAINS:
-            found.setdefault(one.of, one)  # of two sizes of a unit the one that is more common
-    return [f"{one.of}{one.by}" for one in found.values()]
+    loaded = counted[thin]
+    # The unit of one force explains much: what is far too large is of a tip, whatever the others
+    # are. It is named only where most readings need one and nothing else does.
+    found = _explaining(_mistakes(), some, loaded)
+    return found or (_explaining(_of_one_force(), some, loaded) if most else [])
+
+
+def _explaining(mistakes: Iterable[_Mistake], readings: Readings, loaded: Booleans) -> list[str]:
+    found: dict[str, list[str]] = {}
+    for one in mistakes:
+        if judge_phases(one.undone(readings)).explained[loaded].mean() >= _EXPLAINS:
+            found.setdefault(one.of, []).append(one.by)
+    # Of a unit that more than one size explains, none is said.
+    return [of + (sizes[0] if len(sizes) == 1 else "") for of, sizes in found.items()]
 
 
 def _mistakes() -> Iterator[_Mistake]:
@@ -63,15 +69,17 @@ def _mistakes() -> Iterator[_Mistake]:
     yield from _of_units(_FORCES, "both forces")
     yield from _of_units(("moment_z",), "moment_z")
     yield from _of_units(CLAMP_READINGS, "all three readings, or of the flexural rigidity")
-    for name in _FORCES:  # a force that is far too large is one of a tip, whatever the others are
-        yield from _of_units((name,), name, explains_much=True)
+
+
+def _of_one_force() -> Iterator[_Mistake]:
+    for name in _FORCES:
+        yield from _of_units((name,), name, _OF_A_SENSOR)
 
 
 def _of_units(
-    names: tuple[str, ...], called: str, explains_much: bool = False
+    names: tuple[str, ...], called: str, units: tuple[float, ...] = _UNITS
 ) -> Iterator[_Mistake]:
     of = f"the unit of {called}"
-    for unit in _UNITS:
+    for unit in units:
         for factor, way in ((1 / unit, "large"), (unit, "small")):
-            by = f" ({unit:.4g} times too {way})"
-            yield _Mistake(of, by, dict.fromkeys(names, factor), explains_much=explains_much)
+            yield _Mistake(of, f" ({unit:.4g} times too {way})", dict.fromkeys(names, factor))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -31,7 +32,6 @@ from analytic.solver.elastica import tangent_span
 
 _LARGE = 0.99  # quantile of the forces that is called the largest
 _MANY = 0.2  # of the stations; of good readings with 3 % of noise up to an eighth have no contact
-LIKELY = "likely"  # before what a mistake would explain
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
 
@@ -130,26 +130,35 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         raise InputError("vibrissa", "none given", allowed, remedy)
     sizes = f"length {readings.beam.length:g} and rigidity {readings.beam.base_rigidity:g}"
     allowed = f"the one that was measured ({impossible} this one)"
-    of_readings = f"units and signs of {readings.source}{_likely(readings, loaded, True)}"
+    likely = _likely(likely_mistakes(readings, loaded, most=True))
+    of_readings = f"units and signs of {readings.source}{likely}"
     raise InputError("vibrissa", f"of {sizes}", allowed, f"check its units, and {of_readings}")
 
 
-def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
+class Doubt(NamedTuple):
+    """That readings are of no such vibrissa, and the mistakes that would explain them."""
+
+    of: str
+    mistakes: list[str]
+
+    def __str__(self) -> str:
+        check = "check the signs, units and zero of the readings, and the vibrissa"
+        return f"{self.of} are of no such vibrissa: {check}{_likely(self.mistakes)}"
+
+
+def doubt(found: pd.DataFrame, readings: Readings) -> Doubt | None:
     """What to check where many readings, but not most of them, are of no such vibrissa."""
     loaded = clearly_loaded(readings)
     status = found["status"][loaded]
     wrong = int((~status.isin(["ok", "gap"])).sum())
     if wrong <= _MANY * len(status):
         return None
-    return (
-        f"{wrong} of {len(status)} readings under load are of no such vibrissa: check the signs, "
-        f"units and zero of the readings, and the vibrissa{_likely(readings, loaded, False)}"
-    )
+    of = f"{wrong} of {len(status)} readings under load"
+    return Doubt(of, likely_mistakes(readings, loaded, most=False))
 
 
-def _likely(readings: Readings, loaded: Booleans, most: bool) -> str:
-    likely = likely_mistakes(readings, loaded, most)
-    return f"; {LIKELY} {' or '.join(likely)}" if likely else ""
+def _likely(mistakes: list[str]) -> str:
+    return f"; likely {' or '.join(mistakes)}" if mistakes else ""
 
 
 def scatter_of_contacts(passes: Sequence[Readings], found: Sequence[pd.DataFrame]) -> float | None:

@@ -88,7 +88,7 @@ def calibrate(
             terminal.print_line(f"{said}: fit lag too")
         terminal.show(*calibration_summary(found))
         if not found.explains and (why := doubt_of_case(passes[0], known)) is not None:
-            terminal.print_line(why)
+            terminal.print_line(str(why))
         terminal.keep(folder / "calibration.json", calibration_document(found))
         text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
         terminal.keep(folder / "case.toml", text)

@@ -140,7 +140,7 @@ def in_the_plane(
             for one, found in zip(passes, each, strict=True):
                 print_reconstruction(one, found, name)
                 if name == "elastica" and (why := doubt(found, one)) is not None:
-                    terminal.print_line(why)
+                    terminal.print_line(str(why))
             if len(passes) > 1 and (apart := scatter_of_contacts(passes, each)) is not None:
                 terminal.print_line(
                     f"{len(passes)} passes: at one foot position their contact points scatter by "

@@ -45,6 +45,7 @@ class Repeats:
     # out; and the pass that is farthest from the others there.
     left_out: float
     farthest: int
+    by_noise: bool  # whether noise, and what an object's steep places do, explain what is left
     others: tuple[str, ...] = ()  # passes that are as of another object, and not in the mean
 
 
@@ -126,15 +127,17 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         rows=[stations] * count,
     )
     shifts = consistency(found.by_pass)
+    left = _rms((away + shifts.numbers[:, :, None] * slopes) / scale)
     return Repeats(
         tuple(names),
         of_all,
         _rms(away / scale),
-        _rms((away + shifts.numbers[:, :, None] * slopes) / scale),
+        left,
         shifts,
         np.sqrt([covariance[0, 0] for _, covariance in found.by_pass]),
         left_out,
         farthest,
+        bool(left.max() <= _UNLIKE * known + _STEEP),
     )
 
 

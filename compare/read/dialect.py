@@ -91,7 +91,7 @@ def read_text_table(path: Path) -> RawTable:
         what, allowed = f"{width} cells for {len(titles)} names", "one for each"
         remedy = "its commas divide cells and decimals alike: export it with ';' or tabs between"
         raise InputError(f"readings file {path}", what, allowed, remedy)
-    units = _units(dialect, head[:begin], width)
+    units = _units(dialect, head[:begin], dialect.cells(head[begin]))
     names = _names(dialect, head[: begin - bool(units)], width)
     rows = [(number, line) for number, line in _filled(text) if number >= first]
 
@@ -142,7 +142,18 @@ def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
     if 2 * sum(numbered) > sum(good):  # "Samples 9 9 9" of a head is none; texts come after it
         first = numbered.index(True)
         begin = first if min(balance[begin:first], default=0) < 0 else begin
+    numbers = [dialect.weight(cell) > 0 for cell in rows[begin]]
+    while begin and _lacks_some(dialect, rows[begin - 1], numbers):
+        begin -= 1
     return begin, sum(compress(balance, good))
+
+
+def _lacks_some(dialect: Dialect, row: list[str], numbers: list[bool]) -> bool:
+    """Whether a row has numbers and empty cells where the first full one has numbers."""
+    if len(row) != len(numbers):
+        return False
+    weights = [dialect.weight(cell) for cell, number in zip(row, numbers, strict=True) if number]
+    return 1 in weights and -1 not in weights
 
 
 def _names(dialect: Dialect, before: list[str], width: int) -> list[str]:
@@ -163,11 +174,15 @@ def _cells(dialect: Dialect, line: str, width: int) -> list[str]:
     return found if len(found) == width else []
 
 
-def _units(dialect: Dialect, before: list[str], width: int) -> list[str]:
-    """The columns' units: the last line before the data, if all in it are, with names above."""
-    names, units = ([_cells(dialect, line, width) for line in before[-2:]] + [[], []])[:2]
+def _units(dialect: Dialect, before: list[str], data: list[str]) -> list[str]:
+    """The columns' units: the last line before the data, if all in it are, with names above.
+
+    But over texts: a clock's may be hh:mm:ss.
+    """
+    names, units = ([_cells(dialect, line, len(data)) for line in before[-2:]] + [[], []])[:2]
     units = [unit.strip("[]()") for unit in units]
-    units = ["" if unit in _NO_UNIT else unit for unit in units]
+    texts = [dialect.weight(cell) < 0 for cell in data]
+    units = ["" if text or x in _NO_UNIT else x for x, text in zip(units, texts, strict=False)]
     given = [(name, unit) for name, unit in zip(names, units, strict=False) if unit]
     is_row = len(given) > 1 and all(name and is_unit(unit) for name, unit in given)
     return units if is_row else []

@@ -62,9 +62,9 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
         if sound.sum() < FEWEST:
             raise InputError(
                 f"passes.{which}",
-                f"a stretch with {sound.sum()} rows of {name}",
+                f"a stretch with {sound.sum()} rows of {name}, over {np.ptp(foot_x):.3g}",
                 f"one with {FEWEST} or more",
-                "take a longer one, or leave it out",
+                "take a longer one, leave it out, or check the unit and the gain of foot_x",
             )
         stretches.append(Stretch(foot_x[sound], values[:, sound]))
     means = [one.values.mean(axis=1) for one in stretches]
@@ -131,11 +131,11 @@ def bent(zeros: Sequence[Zero]) -> list[Bent]:
     # Noise is of one kind in all passes, which show more of it than two short stretches.
     slopes, variances = _slopes([stretch for one in zeros for stretch in one.stretches])
     slopes, variances = slopes.reshape(-1, 2, 3), variances.reshape(-1, 2, 3)
-    means = np.array([[_of_mean(x.values) for x in one.stretches] for one in zeros])
+    means = np.array([one.uncertainty for one in zeros])
     ways = np.array([np.diff([x.foot_x.mean() for x in one.stretches]) for one in zeros])
     # By how much a zero would miss the other stretch if it went on as in either.
     bends = ways[:, :, None] * slopes - np.array([one.drift for one in zeros])[:, None]
-    squares = ways[:, :, None] ** 2 * variances + np.sum(means**2, axis=1)[:, None]
+    squares = ways[:, :, None] ** 2 * variances + 2 * means[:, None] ** 2
     sizes = np.sqrt(np.maximum(squares, np.finfo(float).tiny))
     mean, of_mean = _weighted(bends, sizes**2)
     alike = _no_chance(mean / np.sqrt(of_mean), mean.size)  # what all passes have shows first

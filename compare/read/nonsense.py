@@ -21,6 +21,7 @@ _BACK = 0.02  # of the travel, in one step back
 _BESIDE = 3  # rows on either side of it
 _AHEAD = 0.02  # of the travel, in one step ahead across which ...
 _NEAR = 10  # rows on either side
+_LEAST_TRAVEL, _MOST_TRAVEL = 1e-4, 1e2  # lengths of the vibrissa; a contact takes 1 or so
 _BURST = 3  # rows in a spike, at most
 _LEAP = 3.0  # times what three rows before and three behind differ by
 _LEAST_LEAP = 0.01  # of the largest reading; less is no harm
@@ -87,20 +88,36 @@ def check_units(values: Floats, stretches: Iterable[Booleans], name: str) -> Non
 
 def spikes(values: Floats) -> Booleans:
     """Rows, one to three in turn, at which a reading is far beyond those before and behind."""
-    found = np.zeros(values.shape[1], dtype=bool)
-    for row in values:
-        known = row[np.isfinite(row)]
-        if len(known) < _BURST + 2 * _BESIDE:
-            continue
-        least = max(_SIGMAS * scatter(known), _LEAST_LEAP * np.quantile(np.abs(known), 0.99))
-        for burst in range(1, _BURST + 1):
-            rows = sliding_window_view(row, burst + 2 * _BESIDE)
-            before, within, behind = np.split(rows, [_BESIDE, _BESIDE + burst], axis=1)
-            around = np.hstack([before, behind])
-            lowest, highest = around.min(axis=1), around.max(axis=1)
-            leap = np.maximum(within.min(axis=1) - highest, lowest - within.max(axis=1))
-            first = np.flatnonzero(leap > np.maximum(_LEAP * (highest - lowest), least))
-            found[(first[:, None] + _BESIDE + np.arange(burst)).ravel()] = True
+    found = np.zeros(values.shape, dtype=bool)
+    for row, spiked in zip(values, found, strict=True):
+        known = np.flatnonzero(np.isfinite(row))
+        while len(known) >= _BURST + 2 * _BESIDE and (leaps := _leaps(row[known])).any():
+            spiked[known[leaps]] = True
+            known = known[~leaps]  # others may be beside it
+    return np.asarray(found.any(axis=0))
+
+
+def _leaps(row: Floats) -> Booleans:
+    """The spikes of which none, or one, is among the rows beside.
+
+    At either end all of these are on one side; there it is to be beyond all of the row, too, as
+    what lets go shortly before the end is not.
+    """
+    row = row / max(float(np.abs(row).max()), np.finfo(float).tiny)  # no difference overflows
+    found, order = np.zeros(len(row), dtype=bool), np.sort(row)
+    least = max(_SIGMAS * scatter(row), _LEAST_LEAP * np.quantile(np.abs(row), 0.99))
+    for burst in range(1, _BURST + 1):
+        first = np.arange(len(row) - burst + 1)[:, None]
+        begin = np.clip(first - _BESIDE, 0, len(row) - burst - 2 * _BESIDE)
+        window = begin + np.arange(burst + 2 * _BESIDE)
+        beside = window[(window < first) | (window >= first + burst)].reshape(len(first), -1)
+        lowest, highest = np.sort(row[beside], axis=1)[:, [1, -2]].T
+        at_end = (begin != first - _BESIDE)[:, 0]
+        within = sliding_window_view(row, burst)
+        above = within.min(axis=1) - np.where(at_end, order[-1 - burst], highest)
+        below = np.where(at_end, order[burst], lowest) - within.max(axis=1)
+        clear = np.maximum(_LEAP * (highest - lowest), least)
+        found[(first[np.maximum(above, below) > clear] + np.arange(burst)).ravel()] = True
     return found
 
 
@@ -133,16 +150,31 @@ def check_channels(values: Floats, name: str) -> None:
             raise InputError(reading, what, allowed, remedy)
 
 
+def check_travel(foot_x: Floats, length: float, called: str) -> None:
+    """Refuse a foot that does not move, or not as a vibrissa of this length is swept."""
+    known = foot_x[np.isfinite(foot_x)]
+    what = "without any number" if not len(known) else f"{known[0]:g} in all rows"
+    if len(known) and (travel := float(np.max(known / length) - np.min(known / length))) > 0:
+        if _LEAST_TRAVEL < travel < _MOST_TRAVEL:
+            return
+        what = f"over {travel:.3g} lengths of the vibrissa"
+    allowed = f"a way of {_LEAST_TRAVEL:g} to {_MOST_TRAVEL:g} lengths of it"
+    remedy = "check its column, unit and gain, and [beam] length"
+    raise InputError(f"foot_x of {called}", what, allowed, remedy)
+
+
 def check_sizes(each: Sequence[Floats], names: Sequence[str]) -> None:
     """Refuse passes to one side of which some have other units, or another gain."""
     sizes = np.array([np.nanmax(np.abs(values), axis=1, initial=0.0) for values in each])
-    larger = (sizes / sizes.max(axis=0)).max(axis=1)
-    least = int(np.argmin(larger))
-    if larger[least] < 1 / _UNITS:
-        most = names[int(np.argmax(sizes[:, 0]))]
-        what = f"of {names[least]} at most {larger[least]:.1e} times as large as of {most}"
-        remedy = "its units or its gain are others: describe its file by a rig.toml of its own"
-        raise InputError("readings", what, "of much the same size in all passes", remedy)
+    shares = sizes / sizes.max(axis=0)
+    largest = shares.max(axis=1)
+    of_each = np.column_stack([largest, shares / largest[:, None]])
+    for called, share in zip(("readings", *CLAMP_READINGS), of_each.T, strict=True):
+        least, most = int(np.argmin(share)), names[int(np.argmax(share))]
+        if share[least] < 1 / _UNITS:
+            what = f"of {names[least]} at most {share[least]:.1e} times as large as of {most}"
+            remedy = "of one, units or gain are others: describe its file by a rig.toml of its own"
+            raise InputError(called, what, "of much the same size in all passes", remedy)
 
 
 def check_back(foot_x: Floats, name: str) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
+from analytic.from_clamp.calibration.measured import check_size as check_decades
 from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
@@ -23,6 +24,7 @@ from compare.read.nonsense import (
     check_free,
     check_object,
     check_sizes,
+    check_travel,
     check_units,
     spikes,
 )
@@ -74,6 +76,7 @@ def usable(passes: list[Pass]) -> list[Pass]:
     for one in passes:
         if one.fault is not None:
             raise one.fault
+        check_decades(one.readings, one.readings.beam)
     for some in swept_alike(passes):
         each = [[one.readings.values(name) for name in CLAMP_READINGS] for one in some]
         check_sizes([np.array(values) for values in each], [one.name for one in some])
@@ -88,7 +91,13 @@ def look_at_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
         if stems.count(path.stem) > 1:
             allowed = "of a name that no other has"
             raise InputError("FILE", path, allowed, "rename it: passes take it")
-    return _straightened([one for path in files for one in _of_file(path, rig)])
+    passes = [one for path in files for one in _of_file(path, rig)]
+    names = [one.name for one in passes]
+    for name in names:
+        if names.count(name) > 1:
+            remedy = "rename the file that is called so: of another file one pass has that name"
+            raise InputError("passes", f"two that are called {name}", "of different names", remedy)
+    return _straightened(passes)
 
 
 def _files(source: Path) -> list[Path]:
@@ -110,17 +119,32 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
     table = read_text_table(path)
     raw = _calibrated(table, rig, path)
     groups = _groups(table, rig, path)
-    sweeps = []
-    for group in np.unique(groups):
+    sweeps, lost, beam = [], 0, rig.beam.build()
+    for number, group in enumerate(np.unique(groups), 1):
         rows = raw[groups == group].reset_index(drop=True)
-        if len(rows) >= FEWEST:
-            check_back(rows["foot_x"].to_numpy(), path.stem)
-            sweeps += read_sweeps(rows, rig.beam.build())
+        if len(rows) < FEWEST:
+            lost += len(rows)
+            continue
+        foot_x = rows["foot_x"].to_numpy(copy=True)
+        foot_x[spikes(foot_x[None])] = np.nan  # no stage leaps there and back
+        called = f"{path}, pass {number}" if groups.max() > groups.min() else f"{path}"
+        check_travel(foot_x, beam.length, called)
+        check_back(foot_x, path.stem)
+        try:
+            sweeps += read_sweeps(rows.assign(foot_x=foot_x), beam)
+        except InputError as error:
+            raise error.called(f"{error.name} of {called}") from error
     if not sweeps:
-        raise InputError(f"rows of {path}", len(raw), f"{FEWEST} or more", "is it the right file?")
+        what = f"{len(raw)}, of which {len(raw) // max(number, 1)} to a pass"
+        remedy = "is it the right file, and [passes] column the one that changes with every pass?"
+        raise InputError(f"rows of {path}", what, f"{FEWEST} or more to a pass", remedy)
     for number, (direction, readings) in enumerate(sweeps, 1):
         name = path.stem if len(sweeps) == 1 else f"{path.stem}-{number}"
-        yield _pass(name, direction, readings, rig)
+        one = _pass(name, direction, readings, rig)
+        if lost:
+            dropped = {**one.dropped, "of_too_short_passes": lost}
+            one, lost = replace(one, rows=one.rows + lost, dropped=dropped), 0
+        yield one
 
 
 def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
@@ -161,21 +185,24 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     speed = _speed(raw)
     there = raw.table.drop(columns="time", errors="ignore")
     raw = replace(raw, table=there.assign(foot_x=there["foot_x"] - late))
-    record, counts = inspect_record(raw), raw.provenance.get("rows", {})
+    read, counts = _read(raw), raw.provenance.get("rows", {})
+    # They hide what else is wrong.
+    leaps = spikes(np.where(inspect_record(raw).sound, read, np.nan))
+    read[:, leaps] = np.nan
+    record = inspect_record(replace(raw, table=raw.table.assign(**_by_reading(read))))
     dropped = {
         "without_foot_x": int(raw.provenance.get("rows_without_foot_x", 0)),
         "averaged": int(counts.get("averaged", 0)),
     }
     rows = len(raw.table) + sum(dropped.values())
     for reason in ("missing", "dropped", "clipped", "repeated"):
-        dropped[reason] = int(getattr(record, reason).sum())
-    foot_x, read = raw.values("foot_x"), np.stack([raw.values(n) for n in CLAMP_READINGS])
+        dropped[reason] = int((getattr(record, reason) & ~leaps).sum())
+    dropped["spikes"] = int(leaps.sum())
+    foot_x = raw.values("foot_x")
     said = {reading: rig.columns[reading] for reading in CLAMP_READINGS}
     check_recorded(raw, name)
     constant = np.array([one.scale(reading) * one.zero for reading, one in said.items()])
     before = np.where(record.sound, read - constant[:, None], np.nan)
-    leaps = spikes(before)
-    before[:, leaps], dropped["spikes"] = np.nan, int(leaps.sum())
     values, free, fault = before, np.zeros(len(foot_x), dtype=bool), None
     zero = no_zero(before)
     provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
@@ -234,6 +261,10 @@ def _speed(raw: Readings) -> float | None:
     return float(np.median(known)) if len(known) else None
 
 
+def _read(raw: Readings) -> Floats:
+    return np.stack([raw.values(name) for name in CLAMP_READINGS])
+
+
 def _by_reading(values: Iterable[Any]) -> dict[str, Any]:
     return dict(zip(CLAMP_READINGS, values, strict=True))
 
@@ -258,7 +289,7 @@ def _straightened(passes: list[Pass]) -> list[Pass]:
 
 def _without(one: Pass, curve: Bent) -> Pass:
     readings = one.readings
-    values = np.stack([readings.values(name) for name in CLAMP_READINGS]) - curve.away
+    values = _read(readings) - curve.away
     more = curve.uncertainty if curve.shows else 0.0  # a curve is lopsided, and no parabola
     uncertain = np.hypot(one.drawn.uncertainty, more)
     within = (one.drawn.share >= 0) & (one.drawn.share <= 1)

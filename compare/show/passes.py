@@ -76,6 +76,12 @@ def repeats_summary(found: Repeats) -> Iterator[Block]:
         ],
     )
     yield Text(f"foot_x: {consistency_line(found.shifts, found.names)}")
+    if not found.by_noise:
+        name = CLAMP_READINGS[int(np.argmax(found.rms_without_shift.max(axis=0)))]
+        yield Text(
+            f"but {name} differs by {found.rms_without_shift.max():.0%} of its largest value, which"
+            " no noise does: a sign, a unit, a gain, another object or vibrissa"
+        )
     if found.others:
         yield Text(
             f"not in their mean: {', '.join(found.others)}, as of another object or vibrissa"

@@ -19,7 +19,7 @@ from analytic.from_clamp.passes import (
     consistency,
     left_by_noise,
 )
-from analytic.from_clamp.reconstruct import LIKELY, doubt, reconstruct
+from analytic.from_clamp.reconstruct import Doubt, doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
@@ -187,7 +187,7 @@ def calibrate(
         one.require_sweep("a calibration")
     names = checked_unknowns(unknowns, case)
     for one in passes:
-        check_size(one, case)
+        check_size(one, case.beam)
     measured = Measured.of(passes, case.support.carried(case.beam), noise, len(names))
     if LAG in names and len(set(measured.ways)) < 2:
         remedy = "leave it out, or take passes to the other side, too"
@@ -213,7 +213,7 @@ def calibrate(
     except InputError as error:
         if (why := doubt_of_case(passes[0], case)) is None:
             raise
-        raise error.because(why) from error
+        raise error.because(str(why)) from error
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass, known.alike) if len(passes) > 1 else None
 
@@ -242,13 +242,13 @@ def calibrate(
     )
     if not calibration.explains:
         why = doubt_of_case(passes[0], case)
-        if why is not None and LIKELY in why:
+        if why is not None and why.mistakes:
             best = f"{misfit:.2g} times the noise away from the best fit"
-            raise InputError("readings", best, "those of a vibrissa past an object", why)
+            raise InputError("readings", best, "those of a vibrissa past an object", str(why))
     return calibration
 
 
-def doubt_of_case(readings: Readings, case: Case) -> str | None:
+def doubt_of_case(readings: Readings, case: Case) -> Doubt | None:
     """What may be mistaken in readings that are of no vibrissa as the case has, past any object."""
     held = {**readings.provenance, "support": {}, **support_record(case.support)}
     of_case = replace(readings, beam=case.beam, provenance=held)

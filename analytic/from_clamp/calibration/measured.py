@@ -10,10 +10,11 @@ from analytic.from_clamp.noise import (
     checked_noise,
     largest,
     reading_noise,
+    resting_noise,
     zero_uncertainty,
 )
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.case import Case
+from analytic.problem.beam import Beam
 from analytic.problem.clamp_path import Direction
 from analytic.problem.columns import CLAMP_READINGS, SENSED, units
 from analytic.problem.errors import InputError
@@ -108,19 +109,18 @@ class Measured:
         return replace(self, foot_x=self.foot_x[kept], readings=self.readings[:, kept], rows=rows)
 
 
-def check_size(readings: Readings, case: Case) -> None:
-    """Refuse readings that have no load, or are in other units than the case."""
-    beam = case.beam
+def check_size(readings: Readings, beam: Beam) -> None:
+    """Refuse readings that have no load, or are in other units than the vibrissa."""
     for name, unit in zip(CLAMP_READINGS, units(beam, CLAMP_READINGS), strict=True):
         size = largest(readings.values(name)[readings.trusted]) / unit
         if size == 0:
             remedy = "the vibrissa never touches, or the column is a dead channel"
             what = "zero at all stations"
-            raise InputError(f"{name} of the readings", what, "under load somewhere", remedy)
+            raise InputError(f"{name} of {readings.source}", what, "under load somewhere", remedy)
         if not 10.0**-_DECADES < size < 10.0**_DECADES:
-            what = f"up to {size:.1e} of what EI and length of the case make its unit"
+            what = f"up to {size:.1e} of what the vibrissa's EI and length make its unit"
             allowed, remedy = f"within {_DECADES} decades of it", "give both in the same units"
-            raise InputError(f"{name} of the readings", what, allowed, remedy)
+            raise InputError(f"{name} of {readings.source}", what, allowed, remedy)
 
 
 def measured_under_load(
@@ -134,9 +134,13 @@ def measured_under_load(
     known = reading_noise(readings) if stated is None else stated
     spread = np.array([known.get(name, 0.0) for name in SENSED])
     least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
-    of_free = readings.provenance.get("free_noise", {})
-    free = np.array([of_free.get(name, 0.0) for name in CLAMP_READINGS])
     spread[1:] = np.maximum(spread[1:], least)
+    of_free = readings.provenance.get("free_noise")
+    if of_free is None and stated is None:  # no rig says where it is free
+        values = np.stack([readings.values(name) for name in CLAMP_READINGS])
+        free = resting_noise(values[:, readings.trusted], spread[1:])
+    else:
+        free = np.array([(of_free or {}).get(name, 0.0) for name in CLAMP_READINGS])
     x = readings.values("foot_x")
     force = np.hypot(
         readings.values("force_x") + carried[0], readings.values("force_y") + carried[1]

@@ -236,7 +236,7 @@ def _measured(
         **held._asdict(),
     )
     for one in passes:
-        check_size(one, case)
+        check_size(one, beam)
     return measured, case
 
 

@@ -68,7 +68,9 @@ def test_exact_readings_give_the_numbers_back(profile, direction):
     assert found.explains
 
 
-@pytest.mark.parametrize("off", [0.1, pytest.param(-0.37, marks=pytest.mark.slow), 40.0])
+@pytest.mark.parametrize(
+    "off", [0.1, *(pytest.param(off, marks=pytest.mark.slow) for off in (-0.37, 40.0))]
+)
 def test_a_foot_that_is_off_is_found_too(off):
     """However far: a stage counts from anywhere, a clock from its start."""
     readings = solve_sweep(SOFT)
@@ -285,6 +287,7 @@ def test_the_sweep_that_separates_does_as_much_as_is_said():
 READINGS = solve_sweep(SOFT)
 
 
+@pytest.mark.slow
 def test_a_zero_that_is_known_better_makes_a_narrower_interval():
     """Known to 0.1 % without a word; a rig's free stretches may say more, or less."""
     readings, noise = with_noise(READINGS, 0.002, np.random.default_rng(4))
@@ -302,6 +305,7 @@ def test_a_zero_that_is_known_better_makes_a_narrower_interval():
     assert 1.2 * widths[0] < widths[1] < widths[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curve", [lambda u: 1 - u**2, lambda u: np.sin(2.2 * u) - 0.8 * u])
 def test_a_curve_of_the_zero_is_no_fault_of_the_case_if_it_is_not_known(curve):
     """Of eight times the noise, in each of four passes; without a word it is a fault."""
@@ -321,6 +325,7 @@ def test_a_curve_of_the_zero_is_no_fault_of_the_case_if_it_is_not_known(curve):
     assert one.lowest <= 1 <= one.highest
 
 
+@pytest.mark.slow
 def test_a_stretch_that_is_known_to_be_free_is_no_load():
     """Hum of 1 % beside noise of 0.02 %: from row to row it hardly shows, where it is free it does.
 
@@ -360,7 +365,7 @@ def changed(**columns) -> Readings:
          "natural_curvature, which varies"),
         (READINGS, replace(SOFT, beam=Beam(radius=0.0)), ["tip_radius"], "tip_radius of a vib"),
         (changed(force_x=0.0, force_y=0.0, moment_z=0.0), SOFT, ["friction"], "never touches"),
-        (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of the readings = zero"),
+        (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of analytic = zero"),
         (changed(force_x=1e12 * READINGS.values("force_x")), SOFT, ["friction"], "same units"),
         pytest.param(changed(foot_x=50 * READINGS.values("foot_x")), SOFT, ["friction"],
                      "does not touch", marks=pytest.mark.slow),

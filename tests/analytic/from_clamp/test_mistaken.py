@@ -54,6 +54,23 @@ def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, f
         require_beam(reconstruct(wrong), wrong)
 
 
+def test_the_unit_of_one_force_is_named_if_nothing_else_explains_the_readings(rig):
+    """A force that is made large enough is of a tip, whatever the other one is."""
+    wrong = mistaken(rig, force_y=9.80665)
+    with pytest.raises(InputError, match=r"likely the unit of force_y \(9.807 times too large\)$"):
+        require_beam(reconstruct(wrong), wrong)
+    wrong = mistaken(rig, moment_z=1e-3)
+    with pytest.raises(InputError, match=r"likely the unit of moment_z \(1000 times too small\)$"):
+        require_beam(reconstruct(wrong), wrong)
+
+
+def test_a_size_that_is_not_the_only_one_to_explain_the_readings_is_not_stated(rig):
+    """Of a vibrissa that is next to unloaded, forces are too small by ten or by a thousand."""
+    wrong = mistaken(rig, force_y=1e-3)
+    with pytest.raises(InputError, match=r"likely the unit of both forces$"):
+        require_beam(reconstruct(wrong), wrong)
+
+
 def test_swapped_forces_are_named(rig):
     x, y = (rig.values(name) for name in FORCES)
     wrong = replace(rig, table=rig.table.assign(force_x=y, force_y=x))
@@ -79,8 +96,8 @@ def test_a_wrong_sign_is_named(rig, name):
     """Two thirds of its stations might be of a vibrissa that bends to the other side."""
     wrong = mistaken(rig, **{name: -1.0})
     said = doubt(reconstruct(wrong), wrong)
-    assert "of no such vibrissa" in said
-    assert said.endswith("likely the sign of moment_z or the sign of force_x")
+    assert said.mistakes == ["the sign of moment_z", "the sign of force_x"]
+    assert str(said).endswith("likely the sign of moment_z or the sign of force_x")
 
 
 def test_a_contact_at_the_tip_is_at_the_tip(rig):

@@ -84,6 +84,7 @@ def test_a_thin_vibrissa_on_a_sharp_corner():
     assert np.ptp(readings.values("contact_angle")[at_corner]) > 0.5
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.floats(-1.3, 1.3), min_size=3, max_size=9, unique=True), st.floats(0.1, 0.7))
 def test_any_polygon(angles, height):

@@ -134,6 +134,7 @@ def test_what_is_no_file_is_not_opened(tmp_path):
     assert "at most" in refusal(Readings.read, large)
 
 
+@pytest.mark.slow
 def test_a_small_file_of_too_many_cells(tmp_path):
     path = tmp_path / "same.parquet"
     columns = [pa.repeat(1.0, 1_000_000)] * 101
@@ -142,6 +143,7 @@ def test_a_small_file_of_too_many_cells(tmp_path):
     assert "cells" in refusal(Readings.read, path)
 
 
+@pytest.mark.slow
 @seed(2)
 @settings(max_examples=150, deadline=None)
 @given(st.data())

@@ -132,6 +132,7 @@ def test_foot_advances_up_to_the_fold(profile):
     assert (beyond["foot_x"][reachable] >= events.snap_off.foot_x).all()
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(OBJECTS, st.floats(1e-3, 1e3), st.floats(1e-6, 1e6))
 def test_results_scale(profile, length, rigidity):

@@ -118,6 +118,7 @@ def test_little_friction_differs_in_proportion(body: Body) -> None:
     assert apart[1] < 2e-4
 
 
+@pytest.mark.slow
 def test_a_foot_that_turns_back_leaves_its_tip_where_it_is() -> None:
     path = FootPath([[1.3, 0.3], [0.2, 0.2], [1.3, 0.3]], stations=60)
     readings = _swept(BALL, path, 0.3)
@@ -226,6 +227,7 @@ def test_coulomb_s_law_of_any_case(friction: float, aside: float, turn: float) -
 SHARP = polygon([(-1.2, 1.3), (-0.5, 0.6), (0, 0.4), (0.5, 0.6), (1.2, 1.3)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_across_edges_it_is_the_plane_s(friction: float) -> None:
     """But for the moment of friction at the skin, which goes with the radius."""
@@ -283,6 +285,7 @@ def test_past_a_polyhedron_it_is_at_rest_and_slides_against_friction(seed: int) 
     assert found > 3 or not tips.any()
 
 
+@pytest.mark.slow
 def test_past_an_edge_it_is_at_rest_before_it_goes_on() -> None:
     """An edge is met to 1e-12 L: a state so far from rest can be the start of no panel."""
     case = _solid(43)

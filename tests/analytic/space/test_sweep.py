@@ -166,6 +166,7 @@ def test_a_spheroid_gives_what_its_meridian_gives():
     assert np.allclose(force, np.hypot(planar["force_x"], planar["force_y"]), rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 def test_a_mirror_image_reads_the_mirrored_components():
     body, points = BODIES["ellipsoid"]
     one = known("ellipsoid", LEANING)

@@ -72,7 +72,9 @@ def test_the_interval_covers_all_cases(stations):
     assert 0.92 <= np.mean(within) <= 0.98
 
 
-@pytest.mark.parametrize("planted", PLANTED)
+@pytest.mark.parametrize(
+    "planted", [*PLANTED[:2], *(pytest.param(off, marks=pytest.mark.slow) for off in PLANTED[2:])]
+)
 def test_without_noise(case, exact, planted):
     """On the same stations round-off is left, on others the spline between the reference's."""
     same = found(exact, displaced(exact, planted))
@@ -93,6 +95,7 @@ def test_a_model_that_differs(exact, simulated, planted):
     assert offset.value == pytest.approx(planted, abs=2.5e-4)
 
 
+@pytest.mark.slow
 def test_a_displaced_sweep_agrees_once_it_is_put_back():
     exact, simulated = exact_sweep("catenary"), simulated_sweep("catenary")
     moved = displaced(simulated, 0.05)
@@ -214,6 +217,7 @@ def test_the_last_two_stations_before_the_snap_off_do_not_count():
         assert (changed.value == pytest.approx(calm.value, rel=1e-9)) == same
 
 
+@pytest.mark.slow
 def test_an_interval_knows_noise_that_remembers_and_a_rigs_zeros():
     """Both look like an offset in part: the error was five times what was said."""
     case = Case(profile=circle(0.3, (0.12, 0.68)))

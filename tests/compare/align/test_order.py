@@ -17,7 +17,7 @@ def counted_from(sweep: Readings, origin: float) -> Readings:
     return replace(sweep, table=sweep.table.assign(foot_x=origin - sweep.values("foot_x")))
 
 
-@pytest.mark.parametrize("origin", [0.0, 0.7])
+@pytest.mark.parametrize("origin", [pytest.param(0.0, marks=pytest.mark.slow), 0.7])
 def test_a_stage_that_counts_backwards(case_name, origin):
     """It is named, and what it would agree with is compared."""
     exact = exact_sweep(case_name)

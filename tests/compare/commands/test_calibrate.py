@@ -73,6 +73,7 @@ def remembers(rng, n):
     return lfilter([1], [1, -0.9], rng.standard_normal(n + 99) * np.sqrt(0.19))[99:]
 
 
+@pytest.mark.slow
 def test_noise_that_is_stated_too_large_is_said():
     """Of five times the noise passes had p = 1 and "say the same", and no word of it."""
     found = said_of(8, white, 5)
@@ -83,7 +84,9 @@ def test_noise_that_is_stated_too_large_is_said():
     assert "less" not in right
 
 
-@pytest.mark.parametrize(("count", "said"), [(1, True), (2, True), (3, False)])
+@pytest.mark.parametrize(
+    ("count", "said"), [pytest.param(1, True, marks=pytest.mark.slow), (2, True), (3, False)]
+)
 def test_what_one_pass_does_not_distinguish_is_said(count, said):
     """A circle 3 % off under noise that remembers was called right, of one pass, without a word."""
     assert ("do not distinguish noise that remembers" in said_of(count, remembers, 1)) == said

@@ -38,7 +38,9 @@ def turned(readings):
     return replace(readings, table=table)
 
 
-@pytest.mark.parametrize("family", ["sphere", "auto", "convex"])
+@pytest.mark.parametrize(
+    "family", ["sphere", *(pytest.param(x, marks=pytest.mark.slow) for x in ("auto", "convex"))]
+)
 def test_the_frame_is_the_reason_and_not_the_fit(swept, tmp_path, family):
     turned(swept).write(tmp_path / "turned.parquet")
     (tmp_path / "case.toml").write_text(BODY)
@@ -51,6 +53,7 @@ def test_the_frame_is_the_reason_and_not_the_fit(swept, tmp_path, family):
         assert wrong not in last
 
 
+@pytest.mark.slow
 def test_one_sweep_bounds_no_body(swept, tmp_path):
     swept.write(tmp_path / "one.parquet")
     words = ("one.parquet", "--fit", "convex", "--noise", "0.01", "--out", "o")

@@ -39,7 +39,6 @@ profile.a = "wide"
         (["list", "studies"], 0),  # the cases that whisk have a first contact, found by scipy
         (["run", "catenry"], 2),
         (["run", "catenary", "--stations", "1"], 2),
-        (["analytic", "CASE"], 2),
         (["run", "CASE"], 2),
         (["study", "STUDY"], 2),
         (["view", "nowhere.toml"], 2),

@@ -95,6 +95,7 @@ def test_rigs_side_by_side(tmp_path, sweep):
     assert done.returncode in (0, 1)
 
 
+@pytest.mark.slow
 def test_an_engines_files_keep_their_beam(tmp_path, sweep):
     for name in ("analytic", "one", "two"):
         sweep.write(tmp_path / f"{name}.parquet")

@@ -7,6 +7,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
 from compare import Tolerances, compare
+from compare.judge.allowance import noise_allowance
 from compare.read.case import load_job
 from compare.read.limits import read_tolerances
 from compare.sense.noise import with_noise
@@ -30,6 +31,18 @@ def test_every_limit_has_a_reason():
     assert Tolerances(rms=1e-3).limits()["rms"].reason == "asked for by the caller"
 
 
+def test_a_transition_may_move_as_far_as_noise_moves_it():
+    """Ten times the noise, some ten times as far: of 1e-3 a tenth of the length at most."""
+    levels = (dict.fromkeys(CLAMP_READINGS, level) for level in (1e-4, 1e-3))
+    small, large = (noise_allowance(exact_sweep("parabola"), level) for level in levels)
+    assert large.transitions.keys() == {"first_contact", "phase_b_start", "phase_b_end"}
+    for name, far in large.transitions.items():
+        assert 3 < far / small.transitions[name] < 30
+        assert far < 0.1
+    assert 0.9 < large.phase_agreement < small.phase_agreement
+
+
+@pytest.mark.slow
 def test_limits_from_a_file(tmp_path):
     (tmp_path / "limits.toml").write_text(FILE)
     limits = read_tolerances(tmp_path / "limits.toml", Tolerances)

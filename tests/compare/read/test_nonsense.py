@@ -7,10 +7,11 @@ import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
 from analytic.from_clamp.noise import scatter
+from compare.measure.repeats import repeats
 from compare.read.nonsense import spikes
 from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
-from compare.show.passes import passes_summary
+from compare.show.passes import passes_summary, repeats_summary
 from tests.compare.command import vibrissa
 
 RIG = """
@@ -134,6 +135,50 @@ def test_passes_of_other_units_are_named(tmp_path):
         usable(look_at_passes([*files, milli], described))
 
 
+def lines(folder, several):
+    """A file of passes with a column that distinguishes them."""
+    rows = [f"{k},{line}" for k, one in enumerate(several) for line in one]
+    (folder / "pass.csv").write_text("\n".join(["k,x,fx,fy,mz", *rows]))
+    text = (
+        (folder / "rig.toml").read_text().replace("[passes]\nfree", '[passes]\ncolumn = "k"\nfree')
+    )
+    (folder / "rig.toml").write_text(text)
+    return [folder / "pass.csv"], read_rig(folder / "rig.toml")
+
+
+def test_a_reading_of_another_unit_or_sign_in_one_pass_is_named(tmp_path):
+    """Of 10^10, or of the other sign: "2 passes say the same", for the others did."""
+    rig(tmp_path)
+    rows = np.loadtxt(tmp_path / "pass.csv", delimiter=",", skiprows=1)
+    for factor in (1e3, -1.0):
+        several = [[",".join(map(str, row)) for row in rows * [1, x, 1, 1]] for x in (1, factor)]
+        passes = look_at_passes(*lines(tmp_path, several))
+        if factor > 0:
+            with pytest.raises(InputError, match=r"force_x = of pass-1 at most 1\.0e-03 times"):
+                usable(passes)
+        else:
+            found = repeats([one.readings for one in usable(passes)])
+            said = " ".join(str(getattr(one, "said", "")) for one in repeats_summary(found))
+            assert "but force_x differs by" in said
+
+
+def test_no_pass_is_lost_without_a_word(tmp_path):
+    """Rows of a pass that is too short counted nowhere, and of two of one name one was left."""
+    rig(tmp_path)
+    rows = (tmp_path / "pass.csv").read_text().splitlines()[1:]
+    files, described = lines(tmp_path, [rows, rows[:3], rows])
+    first, second = look_at_passes(files, described)
+    assert (first.rows, second.rows) == (703, 700)
+    assert first.dropped["of_too_short_passes"] == 3
+    (tmp_path / "pass-2.csv").write_text("\n".join(["k,x,fx,fy,mz", *(f"0,{x}" for x in rows)]))
+    with pytest.raises(InputError, match=r"two that are called pass-2.*rename"):
+        look_at_passes([*files, tmp_path / "pass-2.csv"], described)
+
+
+def times(of_foot, of_moment=1):
+    return lambda values: values * [[of_foot], [1], [1], [of_moment]]
+
+
 def saturated(values):
     return np.vstack([values[:2], np.minimum(values[2:3], 0.8 * values[2].max()), values[3:]])
 
@@ -172,7 +217,10 @@ def two_units(values):
         (without_contact, (0.2, 0.2), "pass = under load at 0 rows: .* touches no object"),
         (lambda x: x[:, ::-1], (0.2, 0.2), "pass = to the right by foot_x, .* reverse its rows"),
         (two_units, (0.2, 0.2), r"changes 0\.001\d* times between them: .* has two units"),
-        (lambda x: x[:, :1], (0.2, 0.2), r"5 or more"),
+        (lambda x: x[:, :1], (0.2, 0.2), r"1, of which 1 to a pass: must be 5 or more"),
+        (times(0), (0.2, 0.2), r"foot_x of .*pass.csv = -?0 in all rows.* its column, unit"),
+        (times(1e4), (0.2, 0.2), r"foot_x of .*pass.csv = over 2.* lengths of the vibrissa"),
+        (times(1, 1e9), (0.2, 0.2), r"moment_z of measured, pass = up to .*e\+09 .* 6 decades"),
     ],
 )  # fmt: skip
 def test_nonsense_is_refused(tmp_path, change, stretches, why):
@@ -207,6 +255,23 @@ def test_spikes_are_left_out_and_counted(tmp_path, rows):
     assert one.dropped["spikes"] == len(rows)
     assert not np.isfinite(one.readings.values("force_y")[list(rows)]).any()
     assert one.fault is None
+
+
+@pytest.mark.parametrize("channel", [0, 2])
+@pytest.mark.parametrize("rows", [(300,), (0,), (699,), (300, 302), (300, 301, 303)])
+def test_a_cell_of_nonsense_is_left_out_wherever_it_is(tmp_path, rows, channel):
+    """At an end, beside another or without a number beside it it stayed, and of foot_x the line
+    said that a free stretch had one row."""
+
+    def spiked(values):
+        values[channel, list(rows)] = 9999999.0 + np.arange(len(rows))
+        values[3, [299, 304]] = np.nan
+        return values
+
+    one, *_ = look_at_passes(*rig(tmp_path, spiked))
+    assert one.fault is None
+    assert one.dropped["without_foot_x" if channel == 0 else "spikes"] == len(rows)
+    assert np.nanmax(np.abs(one.readings.table.to_numpy())) < 100
 
 
 @pytest.mark.parametrize("kind", ["white", "walk"])

@@ -56,6 +56,24 @@ def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
     assert_same(read_measured(path, beam=BEAM, columns=columns))
 
 
+def test_a_clock_has_no_unit(tmp_path):
+    """For hh:mm:ss the line of units was taken for names: "column 'stage' missing"."""
+    rows = TABLE.assign(t="09:00:00.010")[["t", *TABLE.columns]].to_csv(sep=";", index=False)
+    head, rest = rows.split("\n", 1)
+    (tmp_path / "rig.csv").write_text(f"Run;7;;;\n{head}\nhh:mm:ss;m;N;N;N m\n{rest}")
+    beam = Beam(si=True)
+    assert_same(read_measured(tmp_path / "rig.csv", beam=beam, columns=COLUMNS))
+
+
+def test_rows_that_lack_numbers_may_come_first(tmp_path):
+    """With a text in each row they were taken for names: "column 'stage' missing"."""
+    table = TABLE.assign(run="p1")[["run", *TABLE.columns]]
+    table.loc[:4, ["Fx", "Fy", "Mz"]] = np.nan
+    table.to_csv(tmp_path / "rig.csv", index=False, sep=";")
+    found = read_measured(tmp_path / "rig.csv", beam=BEAM, columns=COLUMNS)
+    assert (len(found.table), int(found.trusted.sum())) == (40, 35)
+
+
 def test_numbers_above_the_names_are_no_rows(tmp_path):
     """As LabVIEW writes them; under the names, a first cell that is no number is a row's."""
     head = "".join(f"{name}\t9\t9\t9\n" for name in ("Samples", "X0", "Delta_X"))

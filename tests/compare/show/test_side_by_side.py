@@ -110,6 +110,7 @@ def test_of_few_settled_stations_there_are_no_figures(exact):
     assert "stations can be compared" in one.likely
 
 
+@pytest.mark.slow
 def test_cause_and_lack_of_time_are_in_table_page_and_picture(many):
     (row,) = outcomes_table({many.case: many.outcomes}).rows
     assert row[0] == "mine 1.2, other model"

@@ -282,6 +282,7 @@ def test_what_can_leave_the_plane_has_a_note(tmp_path):
         assert [remark.subject for remark in found.remarks].count("plane") == count
 
 
+@pytest.mark.slow
 @rods
 def test_behind_a_rigid_first_edge_it_begins_where_the_sensors_are(tmp_path):
     """On the hand, and not on the free body that the rod hangs on, which feels no contacts."""

@@ -41,7 +41,12 @@ def study(command):
     ("text", "code", "said"),
     [
         (EVENTS_ONLY, 0, ("40 runs, 40 of them done already", "nothing to do")),
-        (EVENTS_ONLY.replace("0.01]", "0.01, 0.015]"), 0, ("50 runs, 40 of them", "10 done")),
+        pytest.param(
+            EVENTS_ONLY.replace("0.01]", "0.01, 0.015]"),
+            0,
+            ("50 runs, 40 of them", "10 done"),
+            marks=pytest.mark.slow,
+        ),
         # A row that was done without the axis gets the value that it had.
         (EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n", 0, ("80 runs, 40 of them", "40 done")),
         (EVENTS_ONLY + "profile.c = [-0.8, 0.5]\n[beam]\n", 1, ("40 of them", "40 bad-input")),
@@ -63,6 +68,7 @@ def test_what_is_done_is_not_done_again(folder, study, text, code, said):
         assert set(runs["profile.c"].value_counts()) == {40}
 
 
+@pytest.mark.slow
 def test_another_base_leaves_only_its_own_rows(folder, study):
     study()
     before = pd.read_parquet(folder / "out" / TABLE_FILE)
@@ -134,6 +140,7 @@ def test_a_simulated_study_and_its_report(folder, study, command, text, least, r
     assert (folder / "out" / "report" / f"{picture}.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_damage_is_reported_in_one_line(folder, study):
     study()
     file = folder / "out" / NAME

@@ -84,6 +84,7 @@ def test_a_row_of_mujoco_is_what_the_library_finds(plan_of):
     assert row["reconstruction_max"] == np.nanmax(far)
 
 
+@pytest.mark.slow
 def test_noise_is_that_of_six_components(plan_of):
     text = LEANING.replace("[body]", "[noise]\nrelative = 0.01\n[body]", 1)
     text = text.replace('["events", "reconstruction"]', '["disagreement"]')
@@ -95,6 +96,7 @@ def test_noise_is_that_of_six_components(plan_of):
     assert all(0.004 < size < 0.02 for size in found)
 
 
+@pytest.mark.slow
 def test_a_mesh_is_known_by_its_content(plan_of, tmp_path):
     text = LEANING.replace(
         'kind = "sphere"\nradius = 1\ncentre = [0, 1.4, 0]', 'kind = "mesh"\nfile = "ball.stl"'

@@ -89,6 +89,7 @@ def test_sensitivities_are_differences_of_sweeps(name):
         assert apart < 0.01 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 def test_a_soft_clamp_and_its_stiffness():
     """The rotation at the clamp is M/c: a stiffer one by d c turns less by M d c/c^2."""
     case = Case(profile=circle(1.0, (0.0, 0.4)), clamp_stiffness=8.0)
@@ -166,6 +167,7 @@ def test_data_whose_noise_remembers_have_a_wider_limit():
     assert factor[0.97] > 1.25
 
 
+@pytest.mark.slow
 def test_a_fitted_offset_is_as_uncertain_as_its_fit():
     case = named_case("parabola")
     exact = solve_sweep(case)

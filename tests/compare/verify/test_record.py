@@ -109,6 +109,7 @@ def test_a_source_of_another_rigidity_differs():
     assert "differs" in {row.state for row in record.verify([{**source, "given": given}])}
 
 
+@pytest.mark.slow
 def test_a_stiffer_rod_differs(monkeypatch):
     march = rod.Cantilever.march
     monkeypatch.setattr(
@@ -149,7 +150,7 @@ def test_a_wrong_sign_in_the_closed_form_differs(model, monkeypatch):
     assert "differs" in states(model)
 
 
-@pytest.mark.parametrize("factor", [1 + 1e-6, np.nan])
+@pytest.mark.parametrize("factor", [1 + 1e-6, pytest.param(np.nan, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("reading", ["force_x", "force_y", "moment_z", "contact_arc_length"])
 def test_a_wrong_reading_of_the_solver_differs(reading, factor, monkeypatch):
     true = contacts.solve_contact

@@ -60,7 +60,7 @@ def tip_under(load, which):
     return ends[-1][0] - ends[0][0], ends[0][1] - ends[-1][1]
 
 
-@pytest.mark.parametrize("load", [5.0, -3.0])
+@pytest.mark.parametrize("load", [5.0, pytest.param(-3.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("which", VIBRISSAE)
 @pytest.mark.parametrize("beam", available_beams())
 def test_cantilever_is_of_second_order(beam, which, load):

@@ -54,7 +54,9 @@ def test_beads_that_are_left_out_of_a_step_touch_nothing_in_it(monkeypatch):
         np.testing.assert_array_equal(swept.values(name), every.values(name))
 
 
-@pytest.mark.parametrize("first", [circle(0.1, (0.0, 0.7)), None])
+@pytest.mark.parametrize(
+    "first", [circle(0.1, (0.0, 0.7)), pytest.param(None, marks=pytest.mark.slow)]
+)
 def test_two_objects_are_touched_at_once(first):
     """The contact passes from one to the other, and in between there are two."""
     box = polygon([(-0.35, 0.35), (-0.2, 0.35), (-0.15, 0.5), (-0.3, 0.55)])
@@ -117,6 +119,7 @@ def test_a_sweep_to_the_right_is_the_mirror_image():
     assert right.snap_off == pytest.approx(-left.snap_off)
 
 
+@pytest.mark.slow
 def test_springs_that_are_too_stiff_for_the_step_are_reported(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     kept = []

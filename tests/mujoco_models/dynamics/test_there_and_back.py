@@ -51,6 +51,7 @@ def test_with_friction_it_sticks_and_slides_back_as_in_closed_form():
     assert back.provenance["events"]["release"] == pytest.approx(touch, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_to_the_right_it_is_the_mirror_image():
     body = CATENARY.profile
     left = Case(profile=body, sweep=Sweep(12, stop=0.4))

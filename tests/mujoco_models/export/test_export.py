@@ -153,7 +153,11 @@ OTHER = next(beam for beam in available_beams() if beam != "chain")
         (["--material", "210 GPa"], "--material = '210 GPa': must be two or three values"),
         (["--material", "2e11,1e-4,2e-4"], "--material = .*: must be with radii"),
         (["--density", "heavy"], "quantity = 'heavy': must be a finite number with a unit"),
-        (["--speed", "2"], "--error = 0.01: must be at least .* at 2 L/T1; ask for a larger error"),
+        pytest.param(
+            ["--speed", "2"],
+            "--error = 0.01: must be at least .* at 2 L/T1; ask for a larger error",
+            marks=pytest.mark.slow,
+        ),
         (["--error", "0.0006"], "--error = 0.0006: must be above 0.0006, .*ask for a larger error"),
     ],
 )

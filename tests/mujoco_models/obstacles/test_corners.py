@@ -200,7 +200,9 @@ def test_the_tip_comes_round_an_edge_that_leans(beam, tmp_path):
     assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=0.02)  # 3/N^2
 
 
-@pytest.mark.parametrize("profile", [SQUARE, LEANING, regular(24)])
+@pytest.mark.parametrize(
+    "profile", [*(pytest.param(p, marks=pytest.mark.slow) for p in (SQUARE, LEANING)), regular(24)]
+)
 def test_links_that_are_not_searched_have_no_contact(profile):
     """Bent at random, near the object and far from it, some of them right through it."""
     case = Case(profile=profile, sweep=Sweep(stations=60))

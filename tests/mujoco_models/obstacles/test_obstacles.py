@@ -94,6 +94,7 @@ def test_a_files_mesh_goes_where_it_is_put(tmp_path):
     np.testing.assert_allclose(mirrored["force_y"], table["force_y"], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_tilted_side_is_refused_if_its_section_is_not_what_is_touched(tmp_path):
     """A cone: a bead of radius r touches sides tilted by 45 degrees at r sqrt(2)."""
     cone = trimesh.creation.cone(1.0, 1.0, sections=400)

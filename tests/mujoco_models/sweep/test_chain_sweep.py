@@ -50,6 +50,7 @@ def test_clamp_balances_the_contact(simulated):
     assert (free[list(CLAMP_READINGS)].abs() < 1e-9).all(axis=None)
 
 
+@pytest.mark.slow
 def test_second_order_in_the_number_of_segments():
     """Facets fine enough not to show beside the beam, at 1.2e-4 of force_x."""
     errors = []

@@ -22,7 +22,7 @@ def stations(case, settings, numerics=None):
         yield walk
 
 
-@pytest.mark.parametrize("points", [400, 3200, 50_000])
+@pytest.mark.parametrize("points", [400, pytest.param(3200, marks=pytest.mark.slow), 50_000])
 @pytest.mark.parametrize("beam", [Beam(), CONE], ids=["uniform", "cone"])
 def test_the_picture_is_mujocos(points, beam):
     """Places, distances, normals and springs, to rounding: also where single precision rounds."""

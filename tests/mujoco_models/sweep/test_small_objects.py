@@ -41,7 +41,9 @@ def test_a_thin_vibrissa_is_no_trouble():
     assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=2e-3)
 
 
-@pytest.mark.parametrize("segments", [pytest.param(3, marks=pytest.mark.slow), 4, 6])
+@pytest.mark.parametrize(
+    "segments", [*(pytest.param(n, marks=pytest.mark.slow) for n in (3, 4)), 6]
+)
 def test_what_is_too_near_to_the_clamp_is_not_ok(segments):
     low = Case(profile=circle(0.05, (0.0, 0.06)), sweep=Sweep(12))
     found = simulate_sweep(low, Settings(segments=segments))
@@ -155,6 +157,7 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(tm
     assert len(evaluated) < 10_000  # observed 2,900
 
 
+@pytest.mark.slow
 def test_a_beam_too_coarse_to_be_followed_says_that_it_is():
     """A contact as stiff as any holds no beam whose first joint is beyond the object."""
     case = Case(Beam(radius=0.0015), circle(0.008, (0.0, 0.0615)), Sweep(17))

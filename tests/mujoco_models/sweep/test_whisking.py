@@ -90,6 +90,7 @@ def test_a_beam_that_slides_far_before_it_lets_go_lets_go():
     assert away < 1e-3  # observed 2.7e-4
 
 
+@pytest.mark.slow
 def test_a_clamp_that_turns_on_leaves_the_object_behind_it():
     """From clear of it at -1.4 rad; at 2.1 rad it is to the left of the clamp's axis once more."""
     case = Case(Beam(natural_curvature=-0.4), parabola(1.25, 0.19), Whisk(-0.38, -1.4, 2.2, 40))

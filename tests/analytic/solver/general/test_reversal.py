@@ -89,6 +89,7 @@ def test_what_rolls_does_not_slide():
     np.testing.assert_allclose(along, s, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_what_varies_does_not_slide_either():
     """Along a straight edge of the object, and the same on the side of a cone that is curved."""
     table = turn_back(VARYING, 0.2, 1000)

@@ -41,7 +41,7 @@ def case_of(profile, natural=0.0, stiffness=math.inf, friction=0.0, stations=40,
     return Case(beam, profile, sweep, clamp_stiffness=stiffness, friction=friction)
 
 
-@pytest.mark.parametrize("natural", [-0.8, 0.0, 0.6])
+@pytest.mark.parametrize("natural", [-0.8, pytest.param(0.0, marks=pytest.mark.slow), 0.6])
 @pytest.mark.parametrize(("stiffness", "friction"), [(math.inf, 0.3), (2.0, 0.0), (8.0, 0.5)])
 @pytest.mark.parametrize("profile", [named_case("catenary").profile, SQUARE, SIXTEEN])
 def test_stations_balance(profile, natural, stiffness, friction):
@@ -77,7 +77,9 @@ def test_phase_b_of_a_thin_vibrissa_shows_friction_and_clamp():
     np.testing.assert_allclose(soft["moment_z"] ** 2, 2 * held, rtol=1e-13)
 
 
-@pytest.mark.parametrize("beam", [Beam(), Beam(tip_radius=0.002)])
+@pytest.mark.parametrize(
+    "beam", [Beam(), pytest.param(Beam(tip_radius=0.002), marks=pytest.mark.slow)]
+)
 def test_snap_off_is_a_fold_and_friction_delays_it(beam):
     profile = named_case("catenary").profile
     places = []

@@ -69,7 +69,9 @@ def way_of(rows):
     return [ClampPath(1.5 - 2 * p, 0 * p, -0.5 + 0.8 * p)], inner
 
 
-@pytest.mark.parametrize("case", sorted(set(ROWS["case"])))
+@pytest.mark.parametrize(
+    "case", [pytest.param("dev0", marks=pytest.mark.slow), *sorted({*ROWS["case"]} - {"dev0"})]
+)
 def test_references(case):
     rows = ROWS[ROWS["case"] == case]
     profile = PROFILES[rows["profile"].iloc[0]]
@@ -157,6 +159,10 @@ def test_named_cases_start_and_end_free(name):
     place = readings.values("contact_x", "contact_y")[touching, :, None]
     beside = np.hypot(x[touching] - place[:, 0], y[touching] - place[:, 1])
     np.testing.assert_allclose(beside.min(axis=1), 0.005, atol=1e-6)
+    angle = reconstruct(readings)["contact_angle"]
+    np.testing.assert_allclose(
+        angle[touching], readings.values("contact_angle")[touching], atol=1e-9
+    )
     noisy = reconstruct(readings, relative_noise(readings, 0.01))
     # Of the first ones the force drowns in noise of that size.
     assert noisy["uncertainty"][phase == "tangent"].median() < 0.05

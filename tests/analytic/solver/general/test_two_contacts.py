@@ -70,7 +70,7 @@ def test_references(profile, natural):
     np.testing.assert_allclose(tip, rows["phi_2"], **EXACT)
 
 
-@pytest.mark.parametrize("natural", [0.5, 0.8])
+@pytest.mark.parametrize("natural", [0.5, pytest.param(0.8, marks=pytest.mark.slow)])
 def test_events(natural):
     rows = ROWS[ROWS["profile"].str.startswith("cat") & ROWS["natural_curvature"].eq(natural)]
     first, last = rows.iloc[0], rows.iloc[-1]
@@ -104,6 +104,7 @@ def test_many_stations_are_solved_as_few_are(case, statuses):
             assert (many[column].to_numpy()[::40] == few[column].to_numpy()).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", ["second_contact_start", "second_contact_end"])
 def test_one_contact_follows_smoothly_from_two(end):
     """Where the inner force is nothing, both have the same readings; and they go on steadily."""
@@ -170,6 +171,7 @@ def test_any_way_of_the_clamp(turn, friction, stiffness):
     assert table[["residual_boundary", "residual_moment"]].max(axis=None) < 1e-11
 
 
+@pytest.mark.slow
 def test_mirrored_and_in_other_units(tmp_path):
     left = solve_sweep(Case(thin(0.5), CORNERS, Sweep(40)))
     right = solve_sweep(Case(thin(0.5), CORNERS, Sweep(40)).mirrored())
@@ -192,7 +194,7 @@ def test_a_planted_error_is_found():
         assert (certify(replace(found, table=table)).max(axis=1)[two] > 1e-8).all()
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1])
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.1])
 def test_the_shape_that_is_drawn_goes_through_both_contacts(friction):
     case = Case(thin(0.5), CORNERS, Sweep(40), friction=friction)
     for found in (solve_sweep(case), solve_sweep(case.mirrored())):
@@ -212,7 +214,7 @@ CEILING = [circle(0.05, (0.3, 0.35)), catenary(0.5, -0.3)]
 
 
 @pytest.mark.parametrize("objects", [POSTS, CEILING], ids=["two posts", "a post below a wall"])
-@pytest.mark.parametrize("friction", [0.0, 0.05])
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.05])
 def test_a_straight_vibrissa_touches_two_objects(objects, friction):
     case = Case(Beam(radius=0.002), objects, Sweep(120), friction=friction)
     found = solve_sweep(case, certified=True)

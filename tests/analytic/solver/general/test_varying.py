@@ -276,6 +276,7 @@ def test_first_contact_is_that_of_two_rigid_bodies(name):
         ]
 
 
+@pytest.mark.slow
 def test_curve_ends_where_a_flexible_tip_would_wind_up():
     """Past the snap-off the tip of a sharp cone turns on, into the body: thousands of states."""
     beam = Beam(radius=0.003, tip_radius=0.0003, natural_curvature=-0.4)
@@ -290,6 +291,7 @@ def test_curve_ends_where_a_flexible_tip_would_wind_up():
     assert (assert_sound(case).table["status"] == "ok").all()
 
 
+@pytest.mark.slow
 def test_mirror_units_and_file(tmp_path):
     beam = Beam(tip_radius=0.002, natural_curvature=bow(-0.4))
     case = case_of(beam, circle(1.0, lowest=(0.2, 0.4)), clamp_stiffness=4.0, friction=0.2)
@@ -366,6 +368,7 @@ def test_phase_b_from_the_first_contact_on(beam):
     assert found.first_contact.status == "ok" and found.first_contact.phase == "tangent"
 
 
+@pytest.mark.slow
 def test_a_thin_vibrissa_first_touches_the_corner_where_the_object_ends():
     """At a corner every slope has one place: the contour's end is as far right as the touch."""
     vertices = [(-0.6, 0.886), (-0.356, 0.498), (0.114, 0.409), (0.223, 0.436), (0.361, 0.501)]

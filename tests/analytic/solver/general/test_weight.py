@@ -74,7 +74,7 @@ def test_what_touches_nothing_hangs_from_its_clamp():
 
 
 @pytest.mark.parametrize("weight", [(0.0, -1e-14), (1e-14, 0.0)])
-@pytest.mark.parametrize("name", ["catenary", "parabola"])
+@pytest.mark.parametrize("name", [pytest.param("catenary", marks=pytest.mark.slow), "parabola"])
 def test_without_a_weight_it_is_what_it_was(name, weight):
     case = named_case(name)
     plain = solve_sweep(case)

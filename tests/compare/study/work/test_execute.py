@@ -91,6 +91,7 @@ def test_a_killed_worker_costs_nothing(plan, tmp_path):
     assert {row["outcome"] for row in rows} == {"done"}
 
 
+@pytest.mark.slow
 def test_a_run_that_kills_its_workers_is_the_only_one_given_up(plan):
     rows = [result.row for result in carry_out(plan, plan.study.recipe, crew(deadly))]
     assert len(rows) == len(plan)

@@ -48,6 +48,7 @@ def test_a_row_holds_what_the_library_finds(plan_of):
     assert set(result.readings) == {"analytic", "candidate"}
 
 
+@pytest.mark.slow
 def test_events_are_those_of_the_whole_case(plan_of):
     """They were those of the paper's vibrissa in a sweep to the left, whatever the case was."""
     plan = plan_of("""
@@ -90,6 +91,7 @@ def test_reconstruction_is_exact_without_noise_and_gets_worse_with_it(plan_of):
     assert (np.diff(errors) > 0).all()
 
 
+@pytest.mark.slow
 def test_a_study_of_whisks(plan_of):
     plan = plan_of("""
         study = { case = "whisk-circle", beams = ["chain"], record = ["events", "disagreement"] }
