@@ -24,6 +24,18 @@ _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
     """What explains nearly all of a disagreement; None if nothing stands out.
 
+    That both state objects of two kinds comes first, for what is fitted knows one alone.
+    """
+    cause = _cause(found, limits, noise)
+    one, other = (str(x.provenance.get("profile", "")) for x in (found.reference, found.candidate))
+    if not one or not other or one.split()[0] == other.split()[0]:
+        return cause
+    return "; else ".join(filter(None, (f"two objects: {one}, and the candidate's {other}", cause)))
+
+
+def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
+    """What explains nearly all of a disagreement past one object.
+
     Defects of the record come first: if the readings agree at the stations without one, they are
     the whole cause. Else the one known mistake or fault is named that explains nearly all of the
     disagreement at those stations, if the next one explains clearly less. Unrest is recognised by

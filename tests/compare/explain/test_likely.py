@@ -144,6 +144,16 @@ def test_who_touches_is_not_said_never_to_touch(made, said):
     assert ("never touches" in found.likely) == (made is mute)
 
 
+def test_two_objects_are_no_clamp_that_gives_way():
+    """A parabola against a circle was "clamp stiffness about 5.59 EI/L"."""
+    one, other = (
+        solve_sweep(Case(profile=profile, sweep=Sweep(40)))
+        for profile in (parabola(1.0, 0.2), circle(1.0, (0, 0.4)))
+    )
+    assert compare(one, other).likely.startswith("two objects: parabola")
+    assert "two objects" not in (compare(one, one).likely or "")
+
+
 def test_a_load_that_noise_hides_is_no_sensor_without_one():
     """A soft drive swings under the sensor: force_x alone jumped, and "the clamp reads no load"."""
     exact = solved()
