@@ -52,6 +52,7 @@ html_title = f"{project} {version}"
 html_show_sphinx = html_copy_source = html_show_sourcelink = False
 myst_heading_anchors = 3
 default_role = "py:obj"
+highlight_language = "text"  # a block without a language is what a command prints
 # Names in docstrings are links only where they are of one thing; models on pages have gaps.
 suppress_warnings = ["ref.python", "misc.highlighting_failure"]
 autodoc_typehints = "none"

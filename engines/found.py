@@ -10,7 +10,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 
 from analytic.problem.errors import InputError, unknown
 from engines.engine import Engine, Role
-from engines.known import known_engines, own_version
+from engines.known import LISTED, known_engines, own_version
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def find_engine(name: str) -> Engine:
     """
     known = known_engines()
     if name not in known:
-        raise unknown("engine", name, known, remedy="`vibrissa list engines` lists them")
+        raise unknown("engine", name, known, remedy=LISTED)
     found = _found(name, known[name])
     if found.engine is None or found.trouble is not None:
         raise InputError("engine", repr(name), "installed", found.trouble or "install it")

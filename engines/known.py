@@ -16,7 +16,7 @@ _SHIPPED = {
     "pyelastica": "engines.shipped:PYELASTICA",
 }
 
-_LISTED = "`vibrissa list engines` lists them"
+LISTED = "`vibrissa list engines` lists them; your own needs an entry point of vibrissa.engines"
 
 
 def named_engines(names: str) -> list[str]:
@@ -29,7 +29,7 @@ def named_engines(names: str) -> list[str]:
             "engine",
             repr(names),
             f"names between commas, each once, of {', '.join(known)}",
-            near(", ".join(name for name in listed if name not in known), known, _LISTED),
+            near(", ".join(name for name in listed if name not in known), known, LISTED),
         )
     return listed
 

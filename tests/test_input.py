@@ -29,6 +29,7 @@ from mujoco_models import Settings, simulate_sweep
     ("make", "said"),
     [
         (lambda: Beam(length=-1), "beam.length = -1"),
+        (lambda: Beam(length="50 mm"), "units are read in case files alone"),
         (lambda: Beam(length=np.inf), "beam.length = inf"),
         (lambda: Beam(flexural_rigidity=0), "beam.flexural_rigidity = 0"),
         (lambda: Beam(flexural_rigidity=np.nan), "beam.flexural_rigidity = nan"),
@@ -46,6 +47,8 @@ from mujoco_models import Settings, simulate_sweep
         (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(start=0)), "sweep.start = 0"),
         (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(stop=3)), "sweep.stop = 3"),
         (lambda: named_case("catenry"), "'catenry'"),
+        (lambda: solve_sweep(named_case("parabola")).values("forcex"), "did you mean force_x?"),
+        (lambda: Readings.of({"foot_x": [1, 2]}), "add force_x, force_y"),
         (lambda: solve_contact(catenary(0.5, -0.8), [2.0]), "alpha = 2.0 rad"),
         (lambda: Settings(segments=1), "mujoco.segments = 1"),
         (lambda: Settings(contact_stiffness=-1), "mujoco.contact_stiffness = -1"),

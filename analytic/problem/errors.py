@@ -76,7 +76,7 @@ def _written(value: object) -> str:
 
 def near(word: object, known: Iterable[str], otherwise: str = "choose one") -> str:
     """What to do about a word that is none of those known: take the one that is nearest."""
-    found = difflib.get_close_matches(str(word), [*known], n=1)
+    found = difflib.get_close_matches(str(word), [*known], n=1, cutoff=0.65)
     return f"did you mean {found[0]}?" if found else otherwise
 
 

@@ -27,6 +27,8 @@ def within(
 ) -> float:
     if not (is_finite_number(value) and low <= float(value) <= high):
         kind = "positive" if low > 0 else "finite"
+        if isinstance(value, str):
+            remedy = "write a number: units are read in case files alone"
         raise InputError(name, value, f"a {kind} number between {low:g} and {high:g}", remedy)
     return float(value)
 

@@ -12,7 +12,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SCHEMA
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError, require, unknown
 from analytic.problem.files import as_path
 from analytic.problem.shown import Shown, stacked, with_unit
 
@@ -67,7 +67,15 @@ class SweepTable(Shown):
         array, shape (stations, columns)
             In the columns' units; NaN throughout where one was not measured. Of a single one its
             shape is (stations,).
+
+        Raises
+        ------
+        InputError
+            If readings have no such column, whatever is measured.
         """
+        for name in columns:
+            if name not in self.table and name not in SCHEMA:
+                raise unknown("column of readings", name, [*self.table])
         missing = np.full(len(self.table), np.nan)
         found = [
             self.table[name].to_numpy(dtype=float) if name in self.table else missing

@@ -64,7 +64,8 @@ def check_columns(table: pd.DataFrame, sensed: tuple[str, ...], source: str) -> 
     if missing:
         names = [*map(str, table.columns)]
         there, allowed = ", ".join(names)[:120] or "none", f"at least {', '.join(sensed)}"
-        alike = {name: difflib.get_close_matches(name, names, n=1) for name in missing}
+        others = [name for name in names if name not in sensed]
+        alike = {name: difflib.get_close_matches(name, others, n=1) for name in missing}
         named = [f"{name} (is it {found[0]}?)" if found else name for name, found in alike.items()]
         raise InputError(
             f"columns of the readings ({source})", there, allowed, f"add {', '.join(named)}"

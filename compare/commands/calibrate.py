@@ -96,7 +96,11 @@ def calibrate(
         if off is not None and not off.lowest <= 0 <= off.highest:
             shift = f" --offset {off.value:.4g}"
         made = folder / "case.toml"
-        terminal.print_line(f"Next: vibrissa compare {made} {first} --beam {made}{shift}")
+        both = len({one.runs_right for one in passes}) > 1
+        way = f" --direction {direction or 'left'}" if both or direction else ""
+        place = " --offset auto" if LAG in found.found else shift  # one way, a lag is an offset
+        seen = f"--beam {made}{place} --noise {noise}{way}"
+        terminal.print_line(f"Next: vibrissa compare {made} {first} {seen}")
         if found.explains:
             of = f"vibrissa reconstruct FILE... --beam {made}{shift}"
             terminal.print_line(f"  of unknown objects with this vibrissa: {of}")

@@ -35,7 +35,7 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
     match first["type"]:
         case "unknown_key":
             key, known = context["key"], context["allowed"]
-            remedy = near(key, known.split(", "), f"remove {shown(key)}")
+            remedy = near(key, known.split(", "), "say it by these, or leave it out")
             allowed = f"one of the keys {known}"
             return InputError(place([*keys, key]), shown(first["input"][key]), allowed, remedy)
         case "missing":

@@ -112,6 +112,7 @@ _COLOURS: dict[State, str] = {
     "open": ORANGE,
     "differs": PINK,
 }
+_COUNTED = {"all digits": "agree in all digits", "differs": "differ by more than is stated"}
 _LEAST = 1e-16  # of a difference that is drawn
 _LINE = 0.19  # inches
 
@@ -156,10 +157,10 @@ def verdict(rows: Sequence[Row]) -> Verdict:
         line = f"{row.source}, {row.what}: {row.quoted}, here {row.ours:.{row.digits + 3}g}"
         said[row.state].append(f"{row.state}: {line}; {_why(row)}".rstrip("; "))
     wrong = said["differs"]
-    counts = ", ".join(f"{_count(rows, state)} {state}" for state in _COLOURS)
+    counts = ", ".join(f"{_count(rows, state)} {_COUNTED.get(state, state)}" for state in _COLOURS)
     claim = "All numbers agree, or differ for a known reason."
     if said["open"]:
-        claim = f"{len(said['open'])} of {len(rows)} numbers differ, and it is open why."
+        claim = f"No number differs by more than is stated; of {len(said['open'])} it is open why."
     if wrong:
         claim = "Some numbers differ by more than is stated."
     return Verdict(not wrong, claim, f"Of {len(rows)}: {counts}.", "", wrong, said["open"])

@@ -1,6 +1,7 @@
 """A rig's passes to the left and to the right, with readings that lag behind the stage."""
 
 import json
+import shlex
 import tomllib
 
 import numpy as np
@@ -109,6 +110,8 @@ def test_a_calibration_finds_the_lag_and_writes_the_case(rig, tmp_path):
     without.ended(1, "the readings come after the positions", "fit lag too")
     done = vibrissa(*words, "--fit", "flexural_rigidity,lag", "--out", "found", cwd=tmp_path)
     done.ended(0, "Next: vibrissa compare found/case.toml", "reconstruct FILE... --beam found/case")
+    (said,) = (line for line in done.stdout.splitlines() if line.startswith("Next: vibrissa "))
+    vibrissa(*shlex.split(said)[2:], cwd=tmp_path).ended(0, "agrees")
     found = json.loads((tmp_path / "found" / "calibration.json").read_text())["found"]
     for name, true in (("flexural_rigidity", 1e-4), ("lag", LAG)):
         assert found[name]["lowest"] <= true <= found[name]["highest"], name
