@@ -31,7 +31,7 @@ from compare.judge.tolerances import (
 )
 from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.measure.measurement import Measurement, measure
-from compare.sense.noise import checked_level, noise_level
+from compare.sense.noise import Noise, checked_level, noise_level
 from compare.sense.occurrence import Occurrence
 from compare.sense.touching import component_levels, component_scales
 from compare.validate.stated import Input, Uncertainties
@@ -298,8 +298,10 @@ def compare(
     candidate = require("candidate", candidate, Readings, _AS_TABLE)
     tolerances = checked_limits(tolerances, Tolerances).suited_to(candidate)
     found = measure(reference, candidate, tolerances.snap_off_window, offset)
-    level = noise_level(reference, found.candidate) if noise == "auto" else checked_level(noise)
-    allowance = noise_allowance(reference, level)
+    if noise == "auto":
+        allowance = noise_allowance(reference, noise_level(reference, found.candidate))
+    else:
+        allowance = noise_allowance(reference, Noise(checked_level(noise)))
     widened = {
         name: replace(event, uncertainty=event.uncertainty + allowance.transitions.get(name, 0.0))
         for name, event in found.events.items()

@@ -74,6 +74,15 @@ def resting_noise(values: Floats, seen: Floats) -> Floats:
         seen = more
 
 
+def correlation_of(jumps: Floats) -> Floats:
+    """Of noise at one station with that at the next, by its `scatter` over its size (AR(1))."""
+    rho = np.linspace(0, 1, 1001)
+    _, *powers = np.correlate(_DIFFERENCE, _DIFFERENCE, "full")[len(_DIFFERENCE) - 2 :]
+    square = np.polynomial.polynomial.polyval(rho, [powers[0], *(2 * x for x in powers[1:])])
+    left = np.sqrt(np.maximum(square / powers[0], 0.0))
+    return np.interp(jumps, left[::-1], rho[::-1])
+
+
 def scatter(values: Floats) -> float:
     """Standard deviation of what jumps from one value to the next."""
     if len(values) < len(_DIFFERENCE):

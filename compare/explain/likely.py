@@ -18,6 +18,7 @@ from compare.sense.record import direction
 _FEWEST = 10  # stations
 _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _HIDES = 0.1  # of the reference's largest force; noise of one component
+_ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -71,8 +72,10 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         slope = found.reference.running_unit[0] * slopes(table, true)
         stations = table["station"].to_numpy()
-        cause = uneven(found, stations, error, slope, jumps, scale) or one_or_two(
-            found, table, true, seen, scale, jumps
+        cause = (
+            uneven(found, stations, error, slope, jumps, scale)
+            or one_or_two(found, table, true, seen, scale, jumps)
+            or _remembering(found, error, scale)
         )
     if cause is None or cause.startswith("noise"):
         ended = _ended(found, limits) if _agrees(error, limits, noise, jumps) else None
@@ -289,6 +292,25 @@ def _jittering(found: Measurement, error: Floats, slopes: Floats) -> str | None:
     name, (_, unit) = found.reference.running, found.reference.running_unit
     size = f"{rms(off):.1e} {unit}"
     return f"jitter of {name} by {size} from station to station: all readings follow it"
+
+
+def _remembering(found: Measurement, error: Floats, scale: Floats) -> str | None:
+    """Noise that hardly jumps, if it is there without a contact, too."""
+    if "segments" in found.candidate.provenance.get("settings", {}):
+        return None
+    touching = found.reference.running_values[found.judged["reference"].phase != "free"]
+    at = found.candidate.running_values
+    idle = found.candidate.trusted & ((at < touching.min()) | (at > touching.max()))
+    if idle.sum() < _FEWEST:
+        return None
+    resting = np.stack([found.candidate.values(n)[idle] for n in CLAMP_READINGS]) / scale[:, None]
+    sizes = rms(error)
+    if (rms(resting) < sizes / _ALIKE).any() or (rms(resting) > sizes * _ALIKE).any():
+        return None
+    return (
+        f"noise that remembers, or a zero that drifts: without contact the readings are off by as "
+        f"much, {rms(resting).max():.1e} rms"
+    )
 
 
 def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) -> str | None:

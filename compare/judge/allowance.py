@@ -11,7 +11,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
 from analytic.space.from_clamp.reconstruct import contacts_moved
 from compare.align.frames import COMPONENTS
-from compare.sense.noise import with_noise
+from compare.sense.noise import Noise, with_noise
 from compare.sense.phases import classify
 from compare.sense.transitions import TRANSITIONS, locate_transitions
 
@@ -27,16 +27,22 @@ class Allowance:
     """What noise adds to the limits of the components."""
 
     level: Mapping[str, float]  # its standard deviation, relative to the largest of each component
+    unsure: Mapping[str, float] = field(default_factory=dict)  # relative, standard, of that
+    # Fraction of the stations of which independent noise would say as much of its size.
+    independent: Mapping[str, float] = field(default_factory=dict)
 
     def rms(self, limit: float, component: str, stations: int) -> float:
         """The rms that a sweep at the limit still shows with noise, but for one case in 1000."""
         square = self.level[component] ** 2
-        spread = np.sqrt((2 * square**2 + 4 * square * limit**2) / max(stations, 1))
+        independent = max(self.independent.get(component, 1.0) * stations, 1.0)
+        spread = np.sqrt((2 * square**2 + 4 * square * limit**2) / independent)
+        spread = np.hypot(spread, 2 * square * self.unsure.get(component, 0.0))
         return float(np.sqrt(limit**2 + square - ndtri(_RISK) * spread))
 
     def max(self, limit: float, component: str, stations: int) -> float:
         """The largest difference that a sweep at the limit still shows with noise."""
-        return float(limit - ndtri(_RISK / 2 / max(stations, 1)) * self.level[component])
+        most = self.level[component] * (1 - ndtri(_RISK) * self.unsure.get(component, 0.0))
+        return float(limit - ndtri(_RISK / 2 / max(stations, 1)) * most)
 
 
 @dataclass(frozen=True)
@@ -56,8 +62,9 @@ class SpatialAllowance(Allowance):
     unknown: float = 0.0  # fraction of stations at which it leaves no contact, in as many cases
 
 
-def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAllowance:
-    """What noise of that `level` does to the reference, from replicas of it."""
+def noise_allowance(reference: Readings, noise: Noise) -> NoiseAllowance:
+    """What such noise does to the reference, from replicas of it."""
+    level = noise.level
     if not any(level.values()):
         return NoiseAllowance()
     stride = -(-len(reference.table) // _STATIONS)
@@ -79,7 +86,7 @@ def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAll
             right.append(np.mean(judged.phase[known] == true[known]))
     fraction = float(np.mean(right) - _SIGMAS * np.std(right)) if right else 1.0
     far = {n: _SIGMAS * float(np.sqrt(np.mean(np.square(m)))) for n, m in moved.items() if m}
-    return NoiseAllowance(level, far, max(fraction, 0.0))
+    return NoiseAllowance(*noise, far, max(fraction, 0.0))
 
 
 def spatial_allowance(
@@ -99,4 +106,6 @@ def spatial_allowance(
     known = np.isfinite(moved)
     squares = np.where(known, moved, 0.0) ** 2
     rms = np.sqrt(squares.sum(axis=1) / np.maximum(known.sum(axis=1), 1))
-    return SpatialAllowance(level, float(rms.max()), float((~known).mean(axis=1).max()))
+    return SpatialAllowance(
+        level, contact=float(rms.max()), unknown=float((~known).mean(axis=1).max())
+    )

@@ -118,15 +118,16 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     known = max(1e-12, float(np.median(seen)))
     unit, along = scale * known, np.linspace(-1, 1, stations)[:, None, None]
     zeros = [zero_uncertainty(one, scale) for one in passes]
+    own = 1 - 1 / count  # of a pass's variance, what is away from the mean of all has
     zero = np.broadcast_to(np.eye(3), (stations, 3, 3))
     found = estimate(
         (away / unit).reshape(-1, 3),
         (-slopes / unit).reshape(-1, 3, 1),
         np.tile(np.concatenate([zero, along * zero], axis=2), (count, 1, 1)),
-        np.tile(np.sqrt(np.mean(np.square(zeros), axis=0)) / unit, 2),
+        np.tile(np.sqrt(own * np.mean(np.square(zeros), axis=0)) / unit, 2),
         rows=[stations] * count,
     )
-    shifts = consistency(found.by_pass)
+    shifts = consistency([(number, covariance / own) for number, covariance in found.by_pass])
     left = _rms((away + shifts.numbers[:, :, None] * slopes) / scale)
     return Repeats(
         tuple(names),

@@ -22,6 +22,7 @@ _ARCHIVES = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # what spreadsheets write, new
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "#n/a", "-"})
 _NO_UNIT = frozenset({"-", "--", "1", "%", "°", "°C"})  # of nothing that is sensed
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|[+-]?(inf|infinity)", re.IGNORECASE)
+_CLOCK = r"\d{1,2}:\d\d:\d\d(\.\d+)?"  # becomes seconds
 _COMMA_IS_POINT = str.maketrans(",.", ".,")
 
 
@@ -204,8 +205,10 @@ def _parsed(dialect: Dialect, rows: str, names: list[str], path: Path) -> pd.Dat
         raise InputError(
             f"readings file {path}", "unreadable", "a table of numbers", why
         ) from error
-    if dialect.decimal == ",":  # what is no number stays as it is written
-        for i, column in frame.items():
-            if pd.api.types.is_string_dtype(column.dtype):
+    for i, column in frame.items():
+        if pd.api.types.is_string_dtype(column.dtype):
+            if column.str.fullmatch(_CLOCK, na=True).all():
+                frame[i] = pd.to_timedelta(column).dt.total_seconds()
+            elif dialect.decimal == ",":  # what is no number stays as it is written
                 frame[i] = column.map(dialect.as_written, na_action="ignore")
     return frame.set_axis(names, axis=1)

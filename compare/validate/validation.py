@@ -283,7 +283,7 @@ def _noise(
     """Standard deviation of the noise of the data, over each reading's largest magnitude."""
     sizes = dict(zip(CLAMP_READINGS, scale.tolist(), strict=True))
     by = "the scatter between passes" if "scatter" in data.provenance else "estimated from the data"
-    known = {n: (by, x / sizes[n]) for n, x in shown_noise(data).items()}
+    known = {n: (by, x / sizes[n]) for n, x in shown_noise(data).level.items()}
     if asked is not None:
         known |= {n: ("of the comparison", x) for n, x in asked.level.items() if x > 0}
     known |= {n: ("stated", x / sizes[n]) for n, x in stated.noise.items()}

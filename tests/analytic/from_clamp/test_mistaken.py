@@ -64,10 +64,10 @@ def test_the_unit_of_one_force_is_named_if_nothing_else_explains_the_readings(ri
         require_beam(reconstruct(wrong), wrong)
 
 
-def test_a_size_that_is_not_the_only_one_to_explain_the_readings_is_not_stated(rig):
-    """Of a vibrissa that is next to unloaded, forces are too small by ten or by a thousand."""
+def test_a_force_that_is_too_small_is_named(rig):
+    """It was the unit of both: forces without a size are of a vibrissa that is next to unloaded."""
     wrong = mistaken(rig, force_y=1e-3)
-    with pytest.raises(InputError, match=r"likely the unit of both forces$"):
+    with pytest.raises(InputError, match=r"likely the unit of force_y \(1000 times too small\)$"):
         require_beam(reconstruct(wrong), wrong)
 
 
@@ -89,6 +89,14 @@ def test_swapped_forces_are_named(rig):
 def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):
     with pytest.raises(InputError, match=re.escape(likely)):
         calibrate(mistaken(rig, **factors), RIG)
+
+
+def test_a_moment_in_another_unit_is_no_force():
+    """Of an unknown EI it was "force_x and moment_z, swapped": so large a force is of a tip."""
+    exact = solve_sweep(Case(Beam(), circle(0.73, lowest=(0.22, 0.44)), Sweep(150)))
+    read = noisy(exact, relative_noise(exact, 0.005), 7)
+    wrong = replace(mistaken(read, moment_z=1e3), beam=Beam(1.0, 1.1))
+    assert not any("swapped" in one for one in doubt(reconstruct(wrong), wrong).mistakes)
 
 
 @pytest.mark.parametrize("name", ["moment_z", "force_x"])

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
 
 from analytic import (
     CLAMP_READINGS,
@@ -120,6 +121,20 @@ def test_readings_that_are_held_are_no_foot_that_jitters(rows):
     few = {n: exact.values(n)[np.where(at % 40 < 6, at - at % 40, at)] for n in CLAMP_READINGS}
     seen = Readings(exact.table[list(SENSED)].assign(**few), exact.beam, "held a few times")
     assert "held" not in (compare(exact, seen).likely or "")
+
+
+def test_noise_that_hardly_jumps_is_there_without_a_contact_too():
+    """It was "the readings alone do not show why"; what is wrong in contact alone is no noise."""
+    exact = solve_sweep(replace(named_case("parabola"), sweep=Sweep(200)))
+    free = (exact.table["phase"] == "free").to_numpy()
+    white = np.random.default_rng(2).standard_normal((3, len(free) + 500)) * np.sqrt(1 - 0.9**2)
+    noise = lfilter([1.0], [1.0, -0.9], white)[:, 500:]
+    table, still = exact.table[list(SENSED)].copy(), exact.table[list(SENSED)].copy()
+    for name, one in zip(CLAMP_READINGS, noise, strict=True):
+        off = 0.02 * np.abs(exact.values(name)).max() * one
+        table[name], still[name] = table[name] + off, still[name] + np.where(free, 0.0, off)
+    assert "noise that remembers" in str(compare(exact, replace(exact, table=table)).likely)
+    assert "remembers" not in str(compare(exact, replace(exact, table=still)).likely)
 
 
 @pytest.mark.parametrize(("jumps", "noise"), [(0.75, True), (0.3, False)])

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from analytic import CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
 from compare import Tolerances, compare
 from compare.judge.allowance import noise_allowance
 from compare.read.case import load_job
 from compare.read.limits import read_tolerances
-from compare.sense.noise import with_noise
+from compare.sense.noise import Noise, with_noise
 from tests.conftest import exact_sweep, simulated_sweep
 
 FILE = """
@@ -33,7 +34,7 @@ def test_every_limit_has_a_reason():
 
 def test_a_transition_may_move_as_far_as_noise_moves_it():
     """Ten times the noise, some ten times as far: of 1e-3 a tenth of the length at most."""
-    levels = (dict.fromkeys(CLAMP_READINGS, level) for level in (1e-4, 1e-3))
+    levels = (Noise(dict.fromkeys(CLAMP_READINGS, level)) for level in (1e-4, 1e-3))
     small, large = (noise_allowance(exact_sweep("parabola"), level) for level in levels)
     assert large.transitions.keys() == {"first_contact", "phase_b_start", "phase_b_end"}
     for name, far in large.transitions.items():
@@ -96,6 +97,30 @@ def test_noise_is_no_disagreement(case_name, exact, level):
         found = compare(exact, noisy, noise=noise)
         assert found.agrees, found.failures
     assert found.noise.level["force_y"] == pytest.approx(level, rel=0.25)
+
+
+def remembering(exact, memory, seed, gain=1.0):
+    """A sweep with 1 % of such noise."""
+    rng = np.random.default_rng(seed)
+    white = rng.standard_normal((3, len(exact.table) + 500)) * np.sqrt(1 - memory**2)
+    noise = lfilter([1.0], [1.0, -memory], white)[:, 500:]
+    table = exact.table[["foot_x", *CLAMP_READINGS]].copy()
+    for name, one in zip(CLAMP_READINGS, noise, strict=True):
+        table[name] = gain * table[name] + 0.01 * np.abs(exact.values(name)).max() * one
+    return replace(exact, table=table, source="rig")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("memory", "agree"), [(0.0, 10), (0.9, 8)])
+def test_the_size_of_noise_is_known_as_far_as_the_sweep_shows_it(memory, agree):
+    """Of 10 right ones each, 3 and 9 disagreed; of those 6 % too stiff none agrees."""
+    exact = solve_sweep(replace(named_case("parabola"), sweep=Sweep(2000)))
+    limits = Tolerances(rms=1e-3, max=5e-3)
+    right = [compare(exact, remembering(exact, memory, i), limits, noise="auto") for i in range(10)]
+    assert sum(one.agrees for one in right) >= agree
+    for i in range(10):
+        wrong = remembering(exact, memory, i, gain=1.06)
+        assert not compare(exact, wrong, limits, noise="auto").agrees
 
 
 def test_noise_excuses_nothing_but_noise():

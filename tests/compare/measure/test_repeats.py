@@ -89,3 +89,12 @@ def test_a_pass_of_another_object_is_not_in_the_mean():
         str(getattr(one, "said", "")) for one in repeats_summary(found)
     )
     assert max(compare(exact, found.mean, noise="auto").noise.level.values()) < 5e-3
+
+
+def test_two_passes_alike_are_called_so():
+    """Each is half of their difference off the mean: of white noise 1 in 20 pairs had p < 0.01."""
+    rng, found = np.random.default_rng(4), []
+    for _ in range(5):
+        several = [*passes("catenary", 1e-2, rng)]
+        found += [repeats(several[i : i + 2]).shifts.chi_square for i in (0, 2, 4)]
+    assert 0.3 < np.mean(found) < 1.3

@@ -63,6 +63,7 @@ def test_a_clock_has_no_unit(tmp_path):
     (tmp_path / "rig.csv").write_text(f"Run;7;;;\n{head}\nhh:mm:ss;m;N;N;N m\n{rest}")
     beam = Beam(si=True)
     assert_same(read_measured(tmp_path / "rig.csv", beam=beam, columns=COLUMNS))
+    assert read_text_table(tmp_path / "rig.csv").frame["t"].eq(9 * 3600 + 0.01).all()
 
 
 def test_rows_that_lack_numbers_may_come_first(tmp_path):
