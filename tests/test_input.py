@@ -22,7 +22,7 @@ from analytic import (
     solve_sweep,
 )
 from compare import compare, read_measured
-from mujoco_models import Settings, simulate_sweep
+from mujoco_models import Settings, simulate_model, simulate_sweep
 
 
 @pytest.mark.parametrize(
@@ -54,6 +54,7 @@ from mujoco_models import Settings, simulate_sweep
         (lambda: Settings(contact_stiffness=-1), "mujoco.contact_stiffness = -1"),
         (lambda: Settings(corner_radius=0.0), "mujoco.corner_radius = 0.0"),
         (lambda: Settings(beam="rod", springs="arc"), "mujoco.springs = 'arc'"),
+        (lambda: simulate_model(Case(), "a.xml"), "as OwnModel('my_whisker.xml')"),
         (
             lambda: simulate_sweep(Case(beam=Beam(radius=0.0), profile=circle(1, (0, 0.4)))),
             "beam.radius = 0",

@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from threadpoolctl import threadpool_limits
 
 from analytic.problem.case import Case
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 from mujoco_models.dynamics.record import StationMeans
 from mujoco_models.dynamics.sweep import Passes, start_of
@@ -35,6 +35,7 @@ def run_user_model(
     keep: Callable[[Readings], None],
 ) -> Readings:
     """Sweep a user's model to the left; see `mujoco_models.simulate_model`."""
+    require("model", own, OwnModel, "as OwnModel('my_whisker.xml')")
     model = load(own.file, own.site)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms, own.site))
     with unlogged(), threadpool_limits(1):
