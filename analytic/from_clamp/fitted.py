@@ -29,7 +29,9 @@ class Fitted(Shown):
 
     def _tiles(self) -> dict[str, object]:
         return {
-            self.family: "" if self.explains else "does not explain the readings",
+            self.family: "explains the readings"
+            if self.explains
+            else "does not explain the readings",
             **{
                 name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
                 for name, one in self.found.items()

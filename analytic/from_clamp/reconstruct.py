@@ -23,7 +23,6 @@ from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import judge_phases
 from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
-from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, require_readings
@@ -123,16 +122,14 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
     wrong = int((found["status"][loaded] != "ok").sum())
     if 2 * wrong <= loaded.sum():
         return
-    impossible = f"{wrong} of {loaded.sum()} contacts cannot be of"
-    if readings.beam == Beam():
-        allowed = f"the one that was measured ({impossible} L = EI = 1)"
-        remedy = "use --beam FILE (in Python a Beam), in the units of the readings"
-        raise InputError("vibrissa", "none given", allowed, remedy)
     sizes = f"length {readings.beam.length:g} and rigidity {readings.beam.base_rigidity:g}"
-    allowed = f"the one that was measured ({impossible} this one)"
+    allowed = (
+        f"the one that was measured ({wrong} of {loaded.sum()} contacts cannot be of this one)"
+    )
     likely = _likely(likely_mistakes(readings, loaded, most=True))
     of_readings = f"units and signs of {readings.source}{likely}"
-    raise InputError("vibrissa", f"of {sizes}", allowed, f"check its units, and {of_readings}")
+    remedy = f"check its units (--beam FILE, in Python a Beam), and {of_readings}"
+    raise InputError("vibrissa", f"of {sizes}", allowed, remedy)
 
 
 class Doubt(NamedTuple):

@@ -84,7 +84,8 @@ class Readings(OfVibrissa, SweepTable):
                 made.setdefault(name, make())  # several threads that ask at once get the same one
                 self._to_make.pop(name, None)
             if name not in made:
-                remedy = near(name, dir(self), "its columns are in table")
+                known = (one for one in dir(self) if not one.startswith("_"))
+                remedy = near(name, known, "its columns are in table")
                 remedy = f"take table[{name!r}]" if name in SCHEMA else remedy
                 raise AttributeError(f"{type(self).__name__} has no {name!r}; {remedy}")
             return made[name]
@@ -301,7 +302,8 @@ class Readings(OfVibrissa, SweepTable):
 
 
 def require_readings(readings: object) -> Readings:
-    return require("readings", readings, Readings, "as Readings(table, beam)")
+    remedy = "as Readings(table, beam); sweeps in space have functions of their own, analytic.space"
+    return require("readings", readings, Readings, remedy)
 
 
 def solved_readings(

@@ -54,7 +54,7 @@ def check_unit_of_length(
     as_given = _misfit(reference, candidate, reference_phase, 1.0)
     if tried and tried[best] < min(_FITS, _BETTER * as_given):
         raise InputError(
-            "foot_x of the candidate",
+            f"foot_x of {candidate.source}",
             f"spans {spans[1]:.4g} against {spans[0]:.4g} of the reference",
             f"in the same unit: they differ by {max(best, 1 / best):g}",
             "give the unit, as --column foot_x=COLUMN:mm, and a case or beam with units beside it",

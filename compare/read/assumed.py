@@ -33,7 +33,8 @@ def assumed_of(readings: Readings) -> Readings:
         why = f"{wrong} of {len(found)} contacts cannot be of"
     if why:
         allowed = f"the one that was measured ({why} L = EI = 1)"
-        raise InputError("vibrissa", "none given", allowed, BEAM_WANTED)
+        remedy = f"{BEAM_WANTED}; and check the signs of {readings.source}"
+        raise InputError("vibrissa", "none given", allowed, remedy)
     return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
 
 

@@ -74,7 +74,7 @@ class ConvexBand(Shown):
 
     def _tiles(self) -> dict[str, object]:
         return {
-            "convex": "" if self.explains else "does not explain the readings",
+            "convex": "explains the readings" if self.explains else "does not explain the readings",
             "volume at least": f"{volume(self.inner):.4g}",
             "in the box at most": f"{volume(self.outer):.4g}",
             "seen": f"{self.seen:.0%}",
