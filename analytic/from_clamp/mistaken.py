@@ -74,6 +74,8 @@ def _arm(readings: Readings, loaded: Booleans) -> float:
 def _mistakes() -> Iterator[_Mistake]:
     for name in ("moment_z", "force_x", "force_y"):
         yield _Mistake(f"the sign of {name}", factors={name: -1.0})
+    for pair in (_FORCES, ("force_y", "moment_z")):  # a sensor that is turned over
+        yield _Mistake(f"the signs of {' and '.join(pair)}", factors=dict.fromkeys(pair, -1.0))
     every = dict.fromkeys(CLAMP_READINGS, -1.0)
     yield _Mistake("all signs", " (the vibrissa's action on the clamp)", every)
     for swapped in combinations(CLAMP_READINGS, 2):

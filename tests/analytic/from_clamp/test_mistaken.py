@@ -46,6 +46,7 @@ def rig():
         ({"moment_z": 1e-3}, r"unit of moment_z \(1000 times too small\)"),
         (dict.fromkeys((*FORCES, "moment_z"), 9.80665), r"flexural rigidity \(9.807 times"),
         (dict.fromkeys((*FORCES, "moment_z"), -1.0), "likely .*all signs"),
+        (dict.fromkeys(FORCES, -1.0), "likely the signs of force_x and force_y or the signs of"),
     ],
 )
 def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, factors, likely):
