@@ -48,7 +48,7 @@ def exact():
 
 
 def test_what_lacks_a_number_is_counted(exact):
-    force = exact.values("force_x")
+    force = exact.values("force_x").copy()
     force[4:6] = np.nan
     found = compare(exact, as_if_foreign(exact, force_x=force))
     assert found.to_dict()["stations"]["status"]["candidate"] == {"ok": 18, "missing": 2}
