@@ -88,8 +88,9 @@ def test_swapped_forces_are_named(rig):
     ],
 )
 def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):
+    """Of a vibrissa whose rigidity is to be found, and is a tenth off what the case says."""
     with pytest.raises(InputError, match=re.escape(likely)):
-        calibrate(mistaken(rig, **factors), RIG)
+        calibrate(mistaken(rig, **factors), replace(RIG, beam=Beam(0.06, 5.5e-6, 0.2e-3)))
 
 
 def test_a_moment_in_another_unit_is_no_force():
