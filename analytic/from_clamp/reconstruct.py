@@ -25,8 +25,8 @@ from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED, units
-from analytic.problem.errors import InputError, require
-from analytic.problem.readings import Readings
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings, require_readings
 from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import tangent_span
 
@@ -83,7 +83,7 @@ def reconstruct(
         ``"elastica"`` is to find the contact of a vibrissa that varies along its length, is curved
         at rest, rubs, or whose clamp turns.
     """
-    require("readings", readings, Readings, "as Readings(table, beam)")
+    require_readings(readings)
     if method == "decision":
         return reconstruct_by_decision(readings)
     if method != "elastica":
@@ -209,7 +209,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     pandas.DataFrame
         As `reconstruct`.
     """
-    readings.require_plain("the method decision")
+    require_readings(readings).require_plain("the method decision")
     if readings.bends_left:
         return mirrored_table(reconstruct_by_decision(readings.mirrored(), tolerance))
     sensed = dimensionless(readings)

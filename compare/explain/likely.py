@@ -57,16 +57,17 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     )
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
     table = table[~window & sound].reset_index(drop=True)
-    if len(table) < _FEWEST:
-        return "; ".join([*notes, *_doubted(found)]) or None
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     true, seen = (
         np.stack([table[f"{name}_{which}"] for name in CLAMP_READINGS]) / scale[:, None]
         for which in ("reference", "candidate")
     )
     error = seen - true
-    jumps = np.array([scatter(row) for row in error])
     short = _short(found)
+    if len(table) < _FEWEST:
+        short = short if len(table) and _agrees(error, limits, noise) else []
+        return "; ".join([*notes, *_doubted(found), *short]) or None
+    jumps = np.array([scatter(row) for row in error])
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
