@@ -126,7 +126,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
     allowed = (
         f"the one that was measured ({wrong} of {loaded.sum()} contacts cannot be of this one)"
     )
-    likely = _likely(likely_mistakes(readings, loaded, most=True))
+    likely = _likely(likely_mistakes(readings, loaded, True))
     of_readings = f"units and signs of {readings.source}{likely}"
     remedy = f"check its units (--beam FILE, in Python a Beam), and {of_readings}"
     raise InputError("vibrissa", f"of {sizes}", allowed, remedy)
@@ -143,15 +143,15 @@ class Doubt(NamedTuple):
         return f"{self.of} are of no such vibrissa: {check}{_likely(self.mistakes)}"
 
 
-def doubt(found: pd.DataFrame, readings: Readings) -> Doubt | None:
-    """What to check where many readings, but not most of them, are of no such vibrissa."""
+def doubt(found: pd.DataFrame, readings: Readings, unsure: bool = False) -> Doubt | None:
+    """What to check where many readings are of no such vibrissa; its rigidity may be `unsure`."""
     loaded = clearly_loaded(readings)
     status = found["status"][loaded]
     wrong = int((~status.isin(["ok", "gap"])).sum())
     if wrong <= _MANY * len(status):
         return None
     of = f"{wrong} of {len(status)} readings under load"
-    return Doubt(of, likely_mistakes(readings, loaded, most=False))
+    return Doubt(of, likely_mistakes(readings, loaded, False, unsure))
 
 
 def _likely(mistakes: list[str]) -> str:

@@ -19,6 +19,7 @@ _FEWEST = 10  # stations
 _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _HIDES = 0.1  # of the reference's largest force; noise of one component
 _ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
+_MOVES = 0.3  # times what it is off in rms, such a reading varies; a zero that is wrong does not
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -305,12 +306,13 @@ def _remembering(found: Measurement, error: Floats, scale: Floats) -> str | None
     if idle.sum() < _FEWEST:
         return None
     resting = np.stack([found.candidate.values(n)[idle] for n in CLAMP_READINGS]) / scale[:, None]
-    sizes = rms(error)
-    if (rms(resting) < sizes / _ALIKE).any() or (rms(resting) > sizes * _ALIKE).any():
+    idles, sizes = rms(resting), rms(error)
+    alike = (sizes / _ALIKE < idles) & (idles < sizes * _ALIKE)
+    if not alike.all() or (resting.std(axis=1) < _MOVES * idles).any():
         return None
     return (
-        f"noise that remembers, or a zero that drifts: without contact the readings are off by as "
-        f"much, {rms(resting).max():.1e} rms"
+        "noise that remembers, or a zero that drifts: without contact the readings are off by as "
+        f"much, {idles.max():.1e} rms"
     )
 
 
