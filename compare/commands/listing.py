@@ -39,7 +39,7 @@ def _cases() -> Iterator[str]:
         beyond = beyond_the_paper(case.beam, case.support)
         parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
         if case.friction:
-            parts.append("runs with --engine exact, or --motion")
+            parts.append("runs with --engine exact; in MuJoCo by a case file with [motion]")
         if isinstance(case.sweep, Whisk):
             foot, start, stop, _ = astuple(case.sweep)
             parts.append(f"foot at {foot:g} L, its clamp turns from {start:g} to {stop:g} rad")

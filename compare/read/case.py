@@ -68,7 +68,7 @@ def load_job(name_or_path: str | Path) -> Job:
         f"{name_or_path}: [body]",
         "given",
         "a [profile], in the plane",
-        "what takes a body are `vibrissa run`, `compare` and `reconstruct`",
+        "`vibrissa run`, `compare`, `reconstruct` and the marker vibrissa_space take a body",
     )
 
 
@@ -77,5 +77,8 @@ def load_space_job(path: str | Path) -> SpaceJob:
     if isinstance(job, SpaceJob):
         return job
     raise InputError(
-        f"{path}: [body]", "missing", "given for a sweep in space", "`vibrissa run` takes it"
+        f"{path}: [body]",
+        "missing",
+        "given for a sweep in space",
+        "`vibrissa run` and the marker vibrissa take the case",
     )

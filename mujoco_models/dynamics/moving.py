@@ -115,6 +115,7 @@ class SteppedModel(ABC):
         if motion.timestep > longest:
             soft = 0.9 * longest * (motion.stiffness / 1e3) ** 0.5  # critical: damping by its root
             both = f"state [motion] contact_stiffness = 1e3 and timestep = {soft:.2g}"
+            both += "" if motion.cone == "elliptic" else ', with cone = "elliptic", impratio = 100'
             raise InputError(
                 "motion.timestep",
                 motion.timestep,
