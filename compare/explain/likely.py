@@ -19,6 +19,7 @@ _FEWEST = 10  # stations
 _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _HIDES = 0.1  # of the reference's largest force; noise of one component
 _ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
+_ALLOWED = 2.0  # times the noise that the limits are widened by, a hum jumps by 16/sqrt(70) of it
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -65,6 +66,7 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     )
     error = seen - true
     jumps = np.array([scatter(row) for row in error])
+    known = np.array([noise.level[name] for name in CLAMP_READINGS])
     short = _short(found)
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
@@ -72,9 +74,10 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         slope = found.reference.running_unit[0] * slopes(table, true)
         stations = table["station"].to_numpy()
+        fresh = np.where(jumps > _ALLOWED * known, jumps, 0.0)
         cause = (
-            uneven(found, stations, error, slope, jumps, scale)
-            or one_or_two(found, table, true, seen, scale, jumps)
+            uneven(found, stations, error, slope, fresh, scale)
+            or one_or_two(found, table, true, seen, scale, np.maximum(jumps, known))
             or _remembering(found, error, scale)
         )
     if cause is None or cause.startswith("noise"):
