@@ -307,6 +307,9 @@ def _remembering(found: Measurement, error: Floats, scale: Floats) -> str | None
     if idle.sum() < _FEWEST:
         return None
     resting = np.stack([found.candidate.values(n)[idle] for n in CLAMP_READINGS]) / scale[:, None]
+    jumps = np.array([scatter(row) for row in resting])
+    if np.sum(jumps**2) >= _JUMPING * np.sum(rms(resting) ** 2):
+        return None
     sizes = rms(error)
     if (rms(resting) < sizes / _ALIKE).any() or (rms(resting) > sizes * _ALIKE).any():
         return None
