@@ -17,7 +17,7 @@ SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is 
 _IDLE = 10  # stations that show how large noise is where nothing touches
 # Over the root of their number: three standard deviations of what such a median says of white noise
 _CLEARLY = 3.5
-_COARSE = 0.5  # of the stations, not all, are as the one before: a converter hides the noise
+_WHOLE = 1e-3  # of a step; steps so near to whole multiples of the smallest are a converter's
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
 DOUBLE_SIDED_95 = 1.959964  # standard deviations, of a normal distribution
@@ -90,15 +90,21 @@ def scatter(values: Floats) -> float:
     differences = np.convolve(values, _DIFFERENCE, mode="valid")
     # The norm, sqrt(70), is the difference's gain on white noise.
     noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
-    if _COARSE < np.mean(np.diff(values) == 0) < 1:
+    if 0 < np.mean(np.diff(values) == 0) < 1:  # a converter may hide the noise
         noise = max(noise, rounding(values))
     return float(max(noise, _ROUND_OFF * np.abs(values).max()))
 
 
 def rounding(values: Floats) -> float:
-    """Standard deviation of what a converter rounds off; 0 of one that does not move."""
-    steps = np.diff(np.unique(values[np.isfinite(values)]))
-    return float(steps.min()) / 12**0.5 if steps.size else 0.0
+    """Standard deviation of what a converter rounds off; 0 of none, or one that does not move."""
+    known = np.unique(values[np.isfinite(values)])
+    steps = np.diff(known)
+    # Of a value on the grid rounding leaves two numbers that differ in the last place.
+    steps = steps[steps > _ROUND_OFF * np.abs(known).max(initial=0.0)]
+    if len(steps) < 2:
+        return 0.0
+    off = np.abs(steps / steps.min() - np.round(steps / steps.min()))
+    return float(steps.min()) / 12**0.5 if off.max() < _WHOLE else 0.0
 
 
 def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dict[str, float]:

@@ -20,6 +20,7 @@ _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the s
 _HIDES = 0.1  # of the reference's largest force; noise of one component
 _ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
 _MOVES = 0.3  # times what it is off in rms, such a reading varies; a zero that is wrong does not
+_ALLOWED = 2.0  # times the noise that the limits are widened by, a hum jumps by 16/sqrt(70) of it
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -68,15 +69,17 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
         short = short if len(table) and _agrees(error, limits, noise) else []
         return "; ".join([*notes, *_doubted(found), *short]) or None
     jumps = np.array([scatter(row) for row in error])
+    known = np.array([noise.level[name] for name in CLAMP_READINGS])
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         slope = found.reference.running_unit[0] * slopes(table, true)
         stations = table["station"].to_numpy()
+        fresh = np.where(jumps > _ALLOWED * known, jumps, 0.0)
         cause = (
-            uneven(found, stations, error, slope, jumps, scale)
-            or one_or_two(found, table, true, seen, scale, jumps)
+            uneven(found, stations, error, slope, fresh, scale)
+            or one_or_two(found, table, true, seen, scale, np.maximum(jumps, known))
             or _remembering(found, error, scale)
         )
     if cause is None or cause.startswith("noise"):
@@ -306,9 +309,11 @@ def _remembering(found: Measurement, error: Floats, scale: Floats) -> str | None
     if idle.sum() < _FEWEST:
         return None
     resting = np.stack([found.candidate.values(n)[idle] for n in CLAMP_READINGS]) / scale[:, None]
+    jumps = np.array([scatter(row) for row in resting])
     idles, sizes = rms(resting), rms(error)
     alike = (sizes / _ALIKE < idles) & (idles < sizes * _ALIKE)
-    if not alike.all() or (resting.std(axis=1) < _MOVES * idles).any():
+    stays = (resting.std(axis=1) < _MOVES * idles).any()
+    if not alike.all() or stays or np.sum(jumps**2) >= _JUMPING * np.sum(idles**2):
         return None
     return (
         "noise that remembers, or a zero that drifts: without contact the readings are off by as "

@@ -81,9 +81,20 @@ def one_or_two(
         less = 1.0 if best and best.sizes > 1 else _TWO_BETTER
         if two and (best is None or weigh.beyond(two) * less < weigh.beyond(best)):
             return two.text
+        least = min(map(weigh.beyond, pairs))
+        if best and weigh.rest(best) > _REST and least * _TWO_BETTER < weigh.beyond(best):
+            return None  # two do far better, and which two is not clear
     if best is None:
         return None
     rest = weigh.rest(best)
+    if found.offset.uncertainty > 0:
+        # What is off may have moved the fitted offset: it counts beside any other cause.
+        error, offset = seen - true, len(faults) - len(physical) + 1
+        pairs_left = _left_by_two(faults, error)
+        left = np.minimum(pairs_left[offset], pairs_left[:, offset])
+        others = (x for x, own in zip(left, tried, strict=False) if own is not best)
+        if rest > _REST or any(weigh.alike(best, Explanation("", x, 2)) for x in others):
+            return None
     if rival is not None:
         return f"either {best.text}; or {rival.text}" if rest <= _REST else None
     if rest <= _REST:

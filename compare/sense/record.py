@@ -7,6 +7,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
+from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import units
 from analytic.problem.table import says
@@ -15,6 +16,7 @@ from compare.sense.noise import NOTHING, scales
 _LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 _FEWEST = 3  # equal extremes that are no accident
 _PILED = 3  # times more stations at the extreme than at any other one value: not quantisation
+_STEPS = 3  # of a converter; a reading that should be larger is not rounded to zero
 _LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
 _WIDE = 5  # times the median step: a gap
 _BESIDE = 4  # steps to either side that say how long one is
@@ -100,7 +102,8 @@ def inspect_record(readings: Readings) -> Record:
         moving = kept & ~(still | np.append(still[1:], False))  # not a clamp at rest
         for name, scale in scales(readings).items():
             column = readings.values(name)
-            dropped |= kept & _dropped(np.where(kept, column, np.nan), _LOADED * scale)
+            loaded = max(_LOADED * scale, _STEPS * 12**0.5 * rounding(column))
+            dropped |= kept & _dropped(np.where(kept, column, np.nan), loaded)
             at_limit = moving & _clipped(column, moving, _LOADED * scale)
             if at_limit.any():
                 cut.append(name)
@@ -180,6 +183,7 @@ def _clipped(column: Floats, moving: Booleans, loaded: float) -> Booleans:
     if len(values) < _FEWEST:
         return found
     others = counts[1:-1].max(initial=1)
+    others += others > 1  # rounded; next to an extreme a step lasts 1/(sqrt(2) - 1) times as long
     for at, side in ((0, -1), (-1, 1)):
         piled = counts[at] >= max(_FEWEST, _PILED * others)
         if piled and side * values[at] > loaded:

@@ -34,3 +34,10 @@ def test_white_noise_is_as_its_jumps_say():
     seen = np.array([scatter(row) for row in values])
     np.testing.assert_array_equal(resting_noise(values, seen), seen)
     np.testing.assert_allclose(resting_noise(values, SIZES / 1.15), SIZES, rtol=0.06)
+
+
+def test_a_converter_hides_noise_where_few_neighbours_are_equal():
+    """Fourth differences of a slope are zero; a ramp that nothing rounds has no noise."""
+    ramp = 0.95 * np.arange(200.0)
+    np.testing.assert_allclose(scatter(0.01 * np.round(ramp)), 0.01 / np.sqrt(12))
+    assert scatter(ramp) < 1e-11

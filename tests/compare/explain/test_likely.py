@@ -29,7 +29,9 @@ from compare.explain.likely import likely_cause
 from compare.explain.one_or_two import Weigh, best_alone
 from compare.judge.allowance import NoiseAllowance
 from compare.measure.measurement import measure
+from compare.sense.noise import with_noise
 from tests.compare.synthetic import BEAM, STATIONS, changed, mute, solved, unread, untrusted
+from tests.conftest import exact_sweep
 
 _UNKNOWN = "beside that the readings disagree, and do not show why"
 
@@ -146,6 +148,22 @@ def test_half_of_the_square_has_to_jump_to_be_noise(jumps, noise):
     wave = np.sqrt(2) * np.sin(np.arange(len(force)) / 6)
     error = np.sqrt(jumps) * white + np.sqrt(1 - jumps) * wave
     assert str(named(force + 0.02 * force.max() * error * touching)).startswith("noise") == noise
+
+
+def test_noise_that_is_allowed_for_is_no_cause():
+    """It was named, with the advice to estimate it, whatever else was wrong."""
+    exact = replace(exact_sweep("parabola"), provenance={})
+    off = 0.01 * np.random.default_rng(3).standard_normal((3, len(exact.table)))
+    off[2] += 0.01 * np.linspace(-1, 1, len(exact.table))
+    noisy = {
+        n: exact.values(n) + np.abs(exact.values(n)).max() * one
+        for n, one in zip(CLAMP_READINGS, off, strict=True)
+    }
+    found = measure(exact, changed(exact, **noisy), 5e-3)
+    for level, named in ((0.0, True), (0.01, False)):
+        noise = NoiseAllowance(dict.fromkeys(CLAMP_READINGS, level))
+        said = str(likely_cause(found, Tolerances(), noise))
+        assert said.startswith("noise") == named
 
 
 @pytest.mark.parametrize(
@@ -293,3 +311,13 @@ def test_a_cause_of_nearly_all_comes_before_lost_rows():
     found = measure(exact, replace(exact, table=table.reset_index(drop=True)), 5e-3)
     said = likely_cause(found, Tolerances(), NoiseAllowance())
     assert said.startswith("opposite sign of force_y; beside that some 30 rows are not there")
+
+
+@pytest.mark.slow
+def test_a_fitted_offset_may_hide_what_else_is_off():
+    """An object 0.01 L lower and 1 % of noise were a curvature of -0.024/L."""
+    case = Case(profile=parabola(1.38, 0.69), sweep=Sweep(112, direction="right"))
+    lower = solve_sweep(replace(case, profile=parabola(1.38, 0.68)))
+    noisy = with_noise(lower, dict.fromkeys(CLAMP_READINGS, 0.01), 3)
+    said = compare(solve_sweep(case), noisy, offset="auto", noise="auto").likely
+    assert said is None or "height of the object" in said

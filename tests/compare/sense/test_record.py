@@ -68,6 +68,18 @@ def test_what_is_no_defect(noisy):
         assert list(inspect_record(sweep).defects()) == []
 
 
+@pytest.mark.parametrize("steps", [15, 33, 60])
+def test_a_converter_of_few_steps_is_no_defect(steps):
+    """Its zeros next to a touch were rows filled with zeros, its extremes were cut off."""
+    exact = exact_sweep("parabola")
+    draw = np.random.default_rng(steps).standard_normal
+    coarse = {}
+    for name in CLAMP_READINGS:
+        in_steps = steps * exact.values(name) / np.abs(exact.values(name)).max()
+        coarse[name] = np.round(in_steps + 0.1 * draw(len(in_steps))) / steps
+    assert list(inspect_record(changed(exact, **coarse)).defects()) == []
+
+
 def test_dropouts_become_gaps(noisy):
     """Ten rows filled with zeros amid contact; zeros without a contact stay."""
     table = noisy.table.copy()
