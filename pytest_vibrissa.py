@@ -304,7 +304,7 @@ def _chosen(request: pytest.FixtureRequest, one: _Choice) -> Any:  # noqa: ANN40
     try:
         job = one.read(request.param)
     except _ours("analytic").InputError as error:
-        pytest.fail(str(error), pytrace=False)
+        raise pytest.fail.Exception(str(error), pytrace=False) from None
     request.node.stash.setdefault(_JOBS, {})[one.fixture] = job
     return job.case
 

@@ -6,6 +6,6 @@ The names are listed in ``__init__.pyi`` and loaded when first used: every run o
 this package, for the plugin in it.
 """
 
-import lazy_loader
+from analytic.problem.lazy import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -18,6 +18,7 @@ from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .simulate.budgets import measure_budget as measure_budget
 from .testing.gates import assert_agreement as assert_agreement
+from .testing.gates import assert_sound as assert_sound
 from .validate.stated import Input as Input
 from .validate.stated import Uncertainties as Uncertainties
 from .validate.validation import Validation as Validation

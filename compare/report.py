@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from analytic.problem.files import as_path
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.read.run_folder import read_run
 from compare.show.document import Film
@@ -31,7 +32,7 @@ class Report:
 
 
 def write_report(
-    folder: Path, out: Path | None = None, warn: Callable[[str], None] = warnings.warn
+    folder: str | Path, out: str | Path | None = None, warn: Callable[[str], None] = warnings.warn
 ) -> Report:
     """Write the page of a run, a study, or a folder with runs in it, from what is stored there.
 
@@ -39,9 +40,9 @@ def write_report(
 
     Parameters
     ----------
-    folder : Path
+    folder : str or Path
         What ``vibrissa run`` or ``vibrissa study`` has made, or a folder of such folders.
-    out : Path, optional
+    out : str or Path, optional
         Where the page and its files are put, by default `folder`.
     warn : callable
         Called with each line on what of a study cannot be read.
@@ -56,7 +57,8 @@ def write_report(
     InputError
         If the folder holds none of these, or a file in it is damaged.
     """
-    place = folder if out is None else out
+    folder = as_path(folder, "folder")
+    place = folder if out is None else as_path(out, "out")
     if (folder / "study.json").exists():
         return Report(write_study_report(folder, warn, place))
     if not any(folder.glob("*.parquet")):

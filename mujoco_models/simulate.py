@@ -200,7 +200,7 @@ def simulate_motion(
     """
     from mujoco_models.dynamics.sweep import run_motion
 
-    moved = motion or Motion()
+    moved = require("motion", motion or Motion(), Motion, "as Motion(speed=0.01)")
     if not isinstance(case, Case):
         from analytic.space.problem.case import SpatialCase
         from mujoco_models.settings import SpatialSettings

@@ -1,9 +1,14 @@
 """Bad input: one line that names the value, what is allowed, and what to do."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
 
+import analytic
+import compare as compare_package
+import mujoco_models
 from analytic import (
     Beam,
     Case,
@@ -12,7 +17,9 @@ from analytic import (
     Readings,
     Sweep,
     catenary,
+    certify,
     circle,
+    deflected_shapes,
     find_events,
     mesh_section,
     named_case,
@@ -21,8 +28,15 @@ from analytic import (
     solve_contact,
     solve_sweep,
 )
-from compare import compare, read_measured
-from mujoco_models import Settings, simulate_model, simulate_sweep
+from analytic.space import reconstruct_space, solve_space
+from compare import classify, compare, read_measured, separate_lag, validate, write_report
+from mujoco_models import (
+    Settings,
+    inspect_model,
+    simulate_model,
+    simulate_motion,
+    simulate_sweep,
+)
 
 
 @pytest.mark.parametrize(
@@ -55,6 +69,18 @@ from mujoco_models import Settings, simulate_model, simulate_sweep
         (lambda: Settings(corner_radius=0.0), "mujoco.corner_radius = 0.0"),
         (lambda: Settings(beam="rod", springs="arc"), "mujoco.springs = 'arc'"),
         (lambda: simulate_model(Case(), "a.xml"), "as OwnModel('my_whisker.xml')"),
+        (lambda: simulate_motion(Case(), Settings()), "motion = a Settings"),
+        (lambda: inspect_model("sound-chian"), "did you mean sound-chain?"),
+        (lambda: inspect_model(3), "model = a int"),
+        (lambda: certify(Case()), "readings = a Case"),
+        (lambda: classify(Case()), "readings = a Case"),
+        (lambda: deflected_shapes(Case()), "readings = a Case"),
+        (lambda: solve_space(Case()), "case = a Case: must be a SpatialCase"),
+        (lambda: reconstruct_space(Case()), "readings = a Case: must be a SpatialReadings"),
+        (lambda: separate_lag(1, 2), "left = a int: must be a Offset; as compare("),
+        (lambda: write_report(1, 2), "folder = a int: must be a path"),
+        (lambda: write_report("nowhere"), "DIR = nowhere"),
+        (lambda: validate(1, 2, 3), "found = a int"),
         (
             lambda: simulate_sweep(Case(beam=Beam(radius=0.0), profile=circle(1, (0, 0.4)))),
             "beam.radius = 0",
@@ -69,6 +95,21 @@ def test_values(make, said):
     assert "\n" not in message
     assert "must be" in message
     assert ";" in message  # and then what to do
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "said"),
+    [
+        (analytic, "solve_swep", "analytic has no 'solve_swep'; did you mean solve_sweep?"),
+        (compare_package, "measure_budgt", "did you mean measure_budget?"),
+        (mujoco_models, "zzz", "dir(mujoco_models) lists what it has"),
+        (solve_sweep(Case()), "force_x", "take table['force_x']"),
+        (solve_sweep(Case()), "plt", "did you mean plot?"),
+    ],
+)
+def test_names_that_are_nearly_right(of, name, said):
+    with pytest.raises(AttributeError, match=re.escape(said)):
+        getattr(of, name)
 
 
 def test_profiles_that_are_not_convex():

@@ -1,5 +1,5 @@
 """The paper's own routes to the tip's angle, slower than `analytic.solver`, which they check."""
 
-import lazy_loader
+from analytic.problem.lazy import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.checks.integration import integrate_span
 from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, require_readings
 from analytic.problem.support import is_plain, support_of
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def certify(readings: Readings) -> "pd.DataFrame":
         the tip, contact or none: ``residual_moment`` is the moment that is left there, and
         ``residual_boundary`` has what the tip's slope angle misses, too.
     """
+    require_readings(readings)
     held = support_of(readings.provenance)
     clamp_stiffness, friction, _, weight = held
     beam = readings.beam

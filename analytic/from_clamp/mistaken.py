@@ -18,6 +18,9 @@ _LARGE = 0.9  # quantile that is called the size of a reading
 # Of 1,300 random sweeps it is 0.03 to 0.7; of a force that is a thousand times too large, whatever
 # the others are, all contacts would be at the tip.
 _LEAST_ARM, _LONGEST_ARM = 0.01, 1.1
+# Times the stated flexural rigidity, where it is to be found; then times the best one of these.
+_RIGIDITIES = np.geomspace(0.7, 1.4, 13), np.geomspace(0.965, 1.035, 8)
+_MANY = 0.3  # of the stations that a rigidity near the right one makes contacts
 _OF_A_SENSOR = _UNITS[:2]  # by which those of its two forces differ
 _FORCES = CLAMP_READINGS[:2]
 
@@ -38,8 +41,13 @@ class _Mistake:
         return replace(readings, table=readings.table.assign(**right))
 
 
-def likely_mistakes(readings: Readings, counted: Booleans, most: bool) -> list[str]:
-    """What may have been mistaken, if that makes contacts of what is none, as `most` may be."""
+def likely_mistakes(
+    readings: Readings, counted: Booleans, most: bool, unsure: bool = False
+) -> list[str]:
+    """What may have been mistaken, if that makes contacts of what is none, as `most` may be.
+
+    Of an `unsure` flexural rigidity it is nothing if another one makes contacts of them.
+    """
     thin = np.arange(0, len(counted), len(counted) // _LOOKED_AT + 1)
     if len(thin) < 2 or not counted[thin].any():
         return []
@@ -47,20 +55,36 @@ def likely_mistakes(readings: Readings, counted: Booleans, most: bool) -> list[s
     loaded = counted[thin]
     # The unit of one force explains much: what is far too large is of a tip, whatever the others
     # are. It is named only where most readings need one and nothing else does.
-    found = _explaining(_mistakes(), some, loaded)
-    return found or (_explaining(_of_one_force(), some, loaded) if most else [])
+    if unsure and _explains(some, loaded, unsure):
+        return []
+    found = _explaining(_mistakes(), some, loaded, unsure)
+    return found or (_explaining(_of_one_force(), some, loaded, unsure) if most else [])
 
 
-def _explaining(mistakes: Iterable[_Mistake], readings: Readings, loaded: Booleans) -> list[str]:
+def _explaining(
+    mistakes: Iterable[_Mistake], readings: Readings, loaded: Booleans, unsure: bool
+) -> list[str]:
     found: dict[str, list[str]] = {}
     for one in mistakes:
         right = one.undone(readings)
-        if not _LEAST_ARM < _arm(right, loaded) < _LONGEST_ARM:
-            continue
-        if judge_phases(right).explained[loaded].mean() >= _EXPLAINS:
+        far = _LEAST_ARM < _arm(right, loaded) < _LONGEST_ARM
+        if far and _explains(right, loaded, unsure):
             found.setdefault(one.of, []).append(one.by)
     # Of a unit that more than one size explains, none is said.
     return [of + (sizes[0] if len(sizes) == 1 else "") for of, sizes in found.items()]
+
+
+def _explains(readings: Readings, loaded: Booleans, unsure: bool) -> bool:
+    """Whether nearly all are contacts, by the flexural rigidity that makes most of them ones."""
+    ratio, best = 1.0, 0.0
+    for ratios in _RIGIDITIES if unsure else ([1.0],):
+        for one in ratio * np.asarray(ratios):
+            beam = readings.beam.scaled(rigidity=float(one))
+            share = judge_phases(replace(readings, beam=beam)).explained[loaded].mean()
+            ratio, best = (float(one), share) if share > best else (ratio, best)
+        if not _MANY < best < _EXPLAINS:
+            break
+    return bool(best >= _EXPLAINS)
 
 
 def _arm(readings: Readings, loaded: Booleans) -> float:
@@ -74,6 +98,8 @@ def _arm(readings: Readings, loaded: Booleans) -> float:
 def _mistakes() -> Iterator[_Mistake]:
     for name in ("moment_z", "force_x", "force_y"):
         yield _Mistake(f"the sign of {name}", factors={name: -1.0})
+    for pair in (_FORCES, ("force_y", "moment_z")):  # a sensor that is turned over
+        yield _Mistake(f"the signs of {' and '.join(pair)}", factors=dict.fromkeys(pair, -1.0))
     every = dict.fromkeys(CLAMP_READINGS, -1.0)
     yield _Mistake("all signs", " (the vibrissa's action on the clamp)", every)
     for swapped in combinations(CLAMP_READINGS, 2):

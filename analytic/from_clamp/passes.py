@@ -8,8 +8,8 @@ from scipy.special import fdtrc, gammaincc
 
 from analytic.from_clamp.correlated import NoiseFound
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.errors import InputError, require
-from analytic.problem.readings import Readings
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings, require_readings
 
 _BY_CHANCE = 0.01  # probability of so much scatter, or of so little; less is no chance
 _HARDLY = 1e-3  # the same of passes that leave the same; of few the test is right to a factor of 6
@@ -156,7 +156,7 @@ def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
     if not passes:
         raise InputError("readings", "none", "one pass or more", "name the files of the passes")
     for one in passes:
-        require("readings", one, Readings, "as Readings(table, beam)")
+        require_readings(one)
         if one.beam != passes[0].beam:
             different = (
                 f"L = {x.beam.length:g}, EI = {x.beam.base_rigidity:g}, r = {x.beam.radius:g} "

@@ -25,8 +25,8 @@ from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED, units
-from analytic.problem.errors import InputError, require
-from analytic.problem.readings import Readings
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings, require_readings
 from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import tangent_span
 
@@ -83,7 +83,7 @@ def reconstruct(
         ``"elastica"`` is to find the contact of a vibrissa that varies along its length, is curved
         at rest, rubs, or whose clamp turns.
     """
-    require("readings", readings, Readings, "as Readings(table, beam)")
+    require_readings(readings)
     if method == "decision":
         return reconstruct_by_decision(readings)
     if method != "elastica":
@@ -130,7 +130,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         raise InputError("vibrissa", "none given", allowed, remedy)
     sizes = f"length {readings.beam.length:g} and rigidity {readings.beam.base_rigidity:g}"
     allowed = f"the one that was measured ({impossible} this one)"
-    likely = _likely(likely_mistakes(readings, loaded, most=True))
+    likely = _likely(likely_mistakes(readings, loaded, True))
     of_readings = f"units and signs of {readings.source}{likely}"
     raise InputError("vibrissa", f"of {sizes}", allowed, f"check its units, and {of_readings}")
 
@@ -146,15 +146,15 @@ class Doubt(NamedTuple):
         return f"{self.of} are of no such vibrissa: {check}{_likely(self.mistakes)}"
 
 
-def doubt(found: pd.DataFrame, readings: Readings) -> Doubt | None:
-    """What to check where many readings, but not most of them, are of no such vibrissa."""
+def doubt(found: pd.DataFrame, readings: Readings, unsure: bool = False) -> Doubt | None:
+    """What to check where many readings are of no such vibrissa; its rigidity may be `unsure`."""
     loaded = clearly_loaded(readings)
     status = found["status"][loaded]
     wrong = int((~status.isin(["ok", "gap"])).sum())
     if wrong <= _MANY * len(status):
         return None
     of = f"{wrong} of {len(status)} readings under load"
-    return Doubt(of, likely_mistakes(readings, loaded, most=False))
+    return Doubt(of, likely_mistakes(readings, loaded, False, unsure))
 
 
 def _likely(mistakes: list[str]) -> str:
@@ -209,7 +209,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     pandas.DataFrame
         As `reconstruct`.
     """
-    readings.require_plain("the method decision")
+    require_readings(readings).require_plain("the method decision")
     if readings.bends_left:
         return mirrored_table(reconstruct_by_decision(readings.mirrored(), tolerance))
     sensed = dimensionless(readings)

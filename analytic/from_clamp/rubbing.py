@@ -17,8 +17,8 @@ from analytic.from_clamp.noise import (
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, units
-from analytic.problem.errors import InputError, require
-from analytic.problem.readings import Readings
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings, require_readings
 
 _FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
 _ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
@@ -87,7 +87,7 @@ def estimate_friction(
     InputError
         If fewer than five stations are of Phase B, or the noise is no such mapping.
     """
-    require("readings", readings, Readings, "as Readings(table, beam)")
+    require_readings(readings)
     readings.require_sweep("an estimate of the friction")
     sensed, unit = dimensionless(readings), units(readings.beam, CLAMP_READINGS)
     sizes = np.array([largest(readings.values(name)) for name in CLAMP_READINGS])

@@ -9,7 +9,7 @@ from analytic.from_clamp.turning import shapes_turning
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, require_readings
 
 _STEPS = 64  # of a fourth-order method: far below the width of a line
 _FREE = 16  # points of a free end that is an arc
@@ -33,7 +33,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         Coordinates [length]; shape (stations, 81) if the vibrissa is curved at rest, and 64 points
         more if readings state a second contact.
     """
-    if readings.running != "foot_x":
+    if require_readings(readings).running != "foot_x":
         return shapes_turning(readings, deflected_shapes)
     beam = readings.beam
     held = SweptVibrissa.of(readings)

@@ -41,7 +41,7 @@ import numpy as np
 
 from analytic.from_clamp.contact import located
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, require_readings
 
 
 def sideways_stiffness(readings: Readings) -> Floats:
@@ -58,6 +58,6 @@ def sideways_stiffness(readings: Readings) -> Floats:
         Force across the plane over displacement, at the contact [force/length]: negative where the
         vibrissa leaves the plane unless something holds it. NaN where nothing touches.
     """
-    readings.require_plain("the sideways stiffness")
+    require_readings(readings).require_plain("the sideways stiffness")
     contact_x = located(readings).xi * readings.beam.length
     return np.asarray(-readings.values("force_x") / (contact_x - readings.values("foot_x")))

@@ -82,7 +82,11 @@ class Case(AnyCase, Shown):
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
             ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
-            ("sweep", ClampWay, "as Sweep(stations=200), or Whisk(start=-1.2, stop=0.8)"),
+            (
+                "sweep",
+                ClampWay,
+                "a Sweep(stations=200), a Whisk(start=-1.2, stop=0.8), a ClampPath",
+            ),
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
-from analytic.problem.columns import CLAMP_READINGS, SENSED
-from analytic.problem.errors import InputError, Place, row_number
+from analytic.problem.columns import CLAMP_READINGS, SCHEMA, SENSED
+from analytic.problem.errors import InputError, Place, near, require, row_number
 from analytic.problem.files import as_path
 from analytic.problem.limits import OfVibrissa
 from analytic.problem.provenance import check_provenance, recorded_contours
@@ -84,7 +84,9 @@ class Readings(OfVibrissa, SweepTable):
                 made.setdefault(name, make())  # several threads that ask at once get the same one
                 self._to_make.pop(name, None)
             if name not in made:
-                raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+                remedy = near(name, dir(self), "its columns are in table")
+                remedy = f"take table[{name!r}]" if name in SCHEMA else remedy
+                raise AttributeError(f"{type(self).__name__} has no {name!r}; {remedy}")
             return made[name]
 
     def __getstate__(self) -> dict[str, Any]:
@@ -296,6 +298,10 @@ class Readings(OfVibrissa, SweepTable):
             beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
             source = metadata.get("source", path.name)
             return cls.of(content.table, beam, source, metadata.get("provenance"), content.place)
+
+
+def require_readings(readings: object) -> Readings:
+    return require("readings", readings, Readings, "as Readings(table, beam)")
 
 
 def solved_readings(

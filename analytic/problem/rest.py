@@ -115,7 +115,7 @@ def first_on_way(
     touching = ahead & (s <= 1)
     left, right = (touching[:, 0] & (sign * apart[:, 0] < 0) for sign in (1, -1))
     if left.any() and right.any():
-        remedy = "it starts clear of the object, or farther away"
+        remedy = "start clear of the object, or farther away"
         raise InputError("start of the clamp's way", "across the object", "clear of it", remedy)
     passes = (np.signbit(apart[:, 1:]) != np.signbit(apart[:, :-1])) & ahead[:, 1:] & ahead[:, :-1]
     i, j = np.nonzero(passes)

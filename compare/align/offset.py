@@ -10,6 +10,7 @@ from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, MEDIAN_OF_NORMAL, known_to
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import require
 from analytic.problem.provenance import recorded_contours
 from compare.align.jumps import jumps
 from compare.align.stations import interpolant
@@ -73,6 +74,8 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
         Half the sum, and half the difference: the lag as the distance that the stage travels
         meanwhile [length]; divide by its speed for a time.
     """
+    for name, one in (("left", left), ("right", right)):
+        require(name, one, Offset, "as compare(reference, sweep, offset='auto').offset")
     uncertainty = float(np.hypot(left.uncertainty, right.uncertainty)) / 2
     return (
         Offset((left.value + right.value) / 2, uncertainty),

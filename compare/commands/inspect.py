@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
-from analytic.problem.errors import InputError, unknown
+from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 from compare.commands.options import Changes, For, flag, option, out_folder, require_use, words
 from compare.commands.output import check_own, output_folder
@@ -115,12 +115,9 @@ def inspect(
 
 
 def _path(model: str) -> Path:
-    from mujoco_models import shipped_models
+    from mujoco_models.user_model.shipped import find_model
 
-    shipped = shipped_models()
-    if model not in shipped and not Path(model).suffix:
-        raise unknown("MODEL", model, shipped, more=", or a file")
-    return regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
+    return regular_file(find_model(model), "model", sys.maxsize)
 
 
 def _of_a_file(path: Path, names: dict[str, str | None], beam: Path | None) -> "Inspection":

@@ -20,6 +20,7 @@ _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the s
 _HIDES = 0.1  # of the reference's largest force; noise of one component
 _ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
 _ALLOWED = 2.0  # times the noise that the limits are widened by, a hum jumps by 16/sqrt(70) of it
+_MOVES = 0.3  # times what it is off in rms, such a reading varies; a zero that is wrong does not
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -57,17 +58,18 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     )
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
     table = table[~window & sound].reset_index(drop=True)
-    if len(table) < _FEWEST:
-        return "; ".join([*notes, *_doubted(found)]) or None
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     true, seen = (
         np.stack([table[f"{name}_{which}"] for name in CLAMP_READINGS]) / scale[:, None]
         for which in ("reference", "candidate")
     )
     error = seen - true
+    short = _short(found)
+    if len(table) < _FEWEST:
+        short = short if len(table) and _agrees(error, limits, noise) else []
+        return "; ".join([*notes, *_doubted(found), *short]) or None
     jumps = np.array([scatter(row) for row in error])
     known = np.array([noise.level[name] for name in CLAMP_READINGS])
-    short = _short(found)
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
@@ -310,12 +312,13 @@ def _remembering(found: Measurement, error: Floats, scale: Floats) -> str | None
     jumps = np.array([scatter(row) for row in resting])
     if np.sum(jumps**2) >= _JUMPING * np.sum(rms(resting) ** 2):
         return None
-    sizes = rms(error)
-    if (rms(resting) < sizes / _ALIKE).any() or (rms(resting) > sizes * _ALIKE).any():
+    idles, sizes = rms(resting), rms(error)
+    alike = (sizes / _ALIKE < idles) & (idles < sizes * _ALIKE)
+    if not alike.all() or (resting.std(axis=1) < _MOVES * idles).any():
         return None
     return (
-        f"noise that remembers, or a zero that drifts: without contact the readings are off by as "
-        f"much, {rms(resting).max():.1e} rms"
+        "noise that remembers, or a zero that drifts: without contact the readings are off by as "
+        f"much, {idles.max():.1e} rms"
     )
 
 

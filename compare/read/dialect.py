@@ -170,6 +170,8 @@ def _names(dialect: Dialect, before: list[str], width: int) -> list[str]:
 def _cells(dialect: Dialect, line: str, width: int) -> list[str]:
     """The cells of a line before the data; none if they are not as many as the columns."""
     found = dialect.cells(line)
+    if len(found) == width + 1 and found[-1] == "Comment":  # LabVIEW's last, mostly without cells
+        found.pop()
     if len(found) != width:  # names with blanks, over columns between blanks
         found = re.split(r"\t| {2,}", line.strip())
     return found if len(found) == width else []

@@ -3,5 +3,5 @@
 PLANE, MOTION = "a sweep at rest in the plane", "a sweep in motion"
 MODEL, SPACE = "a sweep of a [model]", "a sweep in space"
 
-TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc")
+TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
 TABLES = (".parquet", *TEXTS)

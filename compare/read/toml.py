@@ -85,7 +85,7 @@ class TomlFile:
             if not isinstance(stated, dict):
                 raise
             unit = " in SI units" if _WITH_UNIT.match(str(stated.get(key))) else ""
-            raise error.called(self.place([table, key]) + unit) from error
+            raise error.called(self.place([table, key] if key else [table]) + unit) from error
 
     def _line(self, keys: Sequence[str]) -> int | None:
         """The line that states a key: the last one with its name before which there is none."""

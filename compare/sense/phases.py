@@ -8,6 +8,7 @@ import pandas as pd
 from analytic import PHASES, Readings, reconstruct
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.readings import require_readings
 from analytic.problem.table import says
 
 _CATEGORIES = pd.CategoricalDtype([*PHASES])
@@ -82,7 +83,7 @@ def classify(readings: Readings) -> Classification:
     --------
     analytic.from_clamp.phases.judge_phases : how.
     """
-    judged = judge_phases(readings)
+    judged = judge_phases(require_readings(readings))
     phase = np.where(readings.trusted, judged.phase, "")
     if "events" not in readings.provenance:
         phase[_ringing(readings, phase, judged.explained)] = "free"

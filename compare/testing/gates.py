@@ -1,16 +1,20 @@
-"""Agreement as an assertion, for users' own tests."""
+"""Agreement, and a sound model, as assertions for users' own tests."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from analytic import InputError, Readings
+from analytic import Beam, InputError, Readings
+from analytic.problem.errors import require
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.show.verdict import why
+from mujoco_models import inspect_model
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from compare.align.frames import Frame
     from compare.explain.budget import Budget
 
@@ -66,3 +70,32 @@ def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = N
     causes = [why(comparison, budget)] if isinstance(comparison, Comparison) else []
     lines = [title, *causes, *comparison.failures, *comparison.remarks]
     raise AssertionError("\n  ".join(lines))
+
+
+def assert_sound(model: str | Path, stated: Beam | None = None, **names: str) -> None:
+    """Raise AssertionError if a MuJoCo model has a fault, as ``vibrissa inspect`` finds it.
+
+    Parameters
+    ----------
+    model : str or Path
+        As `mujoco_models.inspect_model` takes it.
+    stated : Beam, optional
+        What the model should be, in its units.
+    **names : str
+        As of `mujoco_models.inspect_model`.
+
+    Raises
+    ------
+    AssertionError
+        Each fault is a line, with what to set.
+    InputError
+        As `mujoco_models.inspect_model`.
+    """
+    __tracebackhide__ = True
+    from compare.simulate.inspection import Inspection  # loads MuJoCo
+
+    if stated is not None:
+        require("stated", stated, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    inspection = Inspection(inspect_model(model, **names), stated)
+    if not inspection.sound:
+        raise AssertionError("\n  ".join([f"{model} is not sound:", *map(str, inspection.faults)]))

@@ -38,7 +38,8 @@ def write_summary(rows: Iterable[Mapping[str, Any]], folder: Path) -> None:
     for row in ordered:
         rms = " | ".join(f"{row['rms'][x]:.1e}" if x in row["rms"] else "" for x in readings)
         lines.append(
-            f"| [{row['candidate']} against {row['reference']}]({row['name']}/report.html) "
+            f"| [{row['name']}]({row['name']}/report.html): "
+            f"{row['candidate']} against {row['reference']} "
             f"| {'agrees' if row['agrees'] else 'disagrees'} | {rms} | {row['likely'] or ''} |"
         )
     lines += ["", "Numbers: rms over each reading's largest magnitude.", ""]

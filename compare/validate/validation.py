@@ -11,6 +11,7 @@ from pydantic import ConfigDict
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import require
 from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
@@ -199,6 +200,7 @@ def validate(
     InputError
         If no compared station has a sensitivity, or the case cannot be solved with its inputs off.
     """
+    require("found", found, Measurement, "as compare(reference, candidate)")
     case.require_sweep("a validation")
     reach = sensitivities(case, stated, samples)
     whole_table = found.alignment.table

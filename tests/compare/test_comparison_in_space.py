@@ -47,6 +47,13 @@ def exact():
     return solve_space(CASE)
 
 
+def test_what_lacks_a_number_is_counted(exact):
+    force = exact.values("force_x").copy()
+    force[4:6] = np.nan
+    found = compare(exact, as_if_foreign(exact, force_x=force))
+    assert found.to_dict()["stations"]["status"]["candidate"] == {"ok": 18, "missing": 2}
+
+
 def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
     found = compare(exact, exact)
     assert found.agrees

@@ -252,7 +252,7 @@ def doubt_of_case(readings: Readings, case: Case) -> Doubt | None:
     """What may be mistaken in readings that are of no vibrissa as the case has, past any object."""
     held = {**readings.provenance, "support": {}, **support_record(case.support)}
     of_case = replace(readings, beam=case.beam, provenance=held)
-    return doubt(reconstruct(of_case), of_case)
+    return doubt(reconstruct(of_case), of_case, unsure=True)
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -131,9 +131,10 @@ def _load(file: Path) -> _Read:
         raise InputError(f"mesh {file}", what, allowed, "check its vertices and its unit")
     middle = corners.mean(axis=0)
     vertices, faces = _merged((corners - middle) / size)
-    if len(faces) < 4:  # a vertex far away makes all others one
-        what = f"of size {size:.3g} with {len(faces)} faces that are not next to nothing"
-        raise InputError(f"mesh {file}", what, "a solid of four or more", "check its vertices")
+    if len(faces) < 4:
+        what = f"{len(faces)} triangles with an area, in a size of {size:.3g}"
+        remedy = "check its vertices: one far away makes all others one"
+        raise InputError(f"mesh {file}", what, "four or more, of a solid", remedy)
     return _Read(vertices, faces, middle, size)
 
 

@@ -21,6 +21,7 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 
+_AS_READ = "as read_space gives them"
 _EXACT = 1e-9  # sine of an angle: what rounding leaves of one that vanishes
 _EXPLAINED = 4.0  # standard deviations that noise may explain
 _TURNED = 0.02  # rad; on a flat face noise alone turns a normal
@@ -65,6 +66,7 @@ def reconstruct_space(
     InputError
         If the vibrissa is not straight and uniform, or the noise is none of the components'.
     """
+    require("readings", readings, SpatialReadings, _AS_READ)
     beam, tangent = readings.beam, readings.clamp_tangent
     require_plain("the reconstruction in space", beam)
     clamp = ClampInSpace.of(readings)
@@ -100,7 +102,7 @@ def of_one_vibrissa(
     """One sweep or several past a body, for who needs a straight and uniform vibrissa."""
     sweeps = readings if isinstance(readings, Sequence) else [readings]
     for one in sweeps:
-        require("readings", one, SpatialReadings, "as read_space gives them")
+        require("readings", one, SpatialReadings, _AS_READ)
         require_plain("the fit of a body", one.beam)
         if one.beam != sweeps[0].beam:
             what = "of different vibrissae"

@@ -161,7 +161,7 @@ class SpatialCase(Shown):
         }
 
     def _place(self, travel: float) -> str:
-        x, _, z = self.way.foot(travel) * self.beam.length
+        x, _, z = (np.round(self.way.foot(travel), 12) + 0.0) * self.beam.length
         return f"({x:.4g}, {z:.4g})"
 
     def _check_place(self) -> None:

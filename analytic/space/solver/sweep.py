@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from analytic.from_clamp.contact import contact_bent_right
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.errors import require
 from analytic.solver.recorded import engine
 from analytic.space.checks.rod import rod_residuals
 from analytic.space.problem.case import SpatialCase
@@ -66,6 +67,7 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
         A vibrissa that comes to an edge which drops it hops to the stable state of less energy
         close by, if that is one; the event ``"hop"`` says where.
     """
+    require("case", case, SpatialCase, "as SpatialCase(body=..., path=...)")
     beam, length = case.beam, case.beam.length
     way = case.way
     scene = Scene(way.body, case.path.clamp_tangent, way.radius)

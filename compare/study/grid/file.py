@@ -82,7 +82,7 @@ def load_study(name_or_path: str) -> Study:
 
 def _checked(file: TomlFile) -> Study:
     # Without a name of its own the study is called like its file, under the same rules.
-    tables = {"study": {}, **file.tables}
+    tables = {"study": {}, **_without_model(file)}
     if isinstance(tables["study"], dict):
         tables["study"] = {"name": file.path.stem, **tables["study"]}
     try:
@@ -104,13 +104,25 @@ def _checked(file: TomlFile) -> Study:
     )
 
 
+def _without_model(file: TomlFile) -> dict[str, Any]:
+    """The tables of a file; a model of the user's own is refused."""
+    if "model" in file.tables:
+        remedy = "a study sweeps our models; sweep yours in a loop over `simulate_model`"
+        raise InputError(file.place(["model"]), "of a study", "left out", remedy)
+    return file.tables
+
+
 class _Base:
     """The base case of a study file, on which every value of its axes is tried."""
 
     def __init__(self, file: TomlFile, content: StudyFile) -> None:
         self._file, self._content = file, content
         self._tables = self._overlaid()
-        checked = checked_run(self._tables, file.place)
+        try:
+            checked = checked_run(self._tables, file.place)
+        except InputError:  # what varies need not stand in the case, too
+            self._tables = self._with_first_values()
+            checked = checked_run(self._tables, file.place)
         try:
             self._built(checked)
         except InputError as error:
@@ -178,7 +190,7 @@ class _Base:
     ) -> InputError:
         return InputError(self._file.place(keys), given, allowed, remedy)
 
-    def _items(self) -> Iterator[tuple[str, object]]:
+    def _items(self) -> Iterator[tuple[str, dict[str, Any] | list[Any]]]:
         """Dotted keys of the axes and what is said of each."""
         seen: set[str] = set()
         for name, table in (self._content.axes or {}).items():
@@ -192,11 +204,17 @@ class _Base:
             for key, value in dotted.items():
                 if key in seen:
                     raise self._wrong(_place(key), "given twice", "given once", "remove one")
+                if not isinstance(value, dict) and not (isinstance(value, list) and value):
+                    allowed = (
+                        "a list of different values, or a range as { from = 1, to = 2, count = 3 }"
+                    )
+                    remedy = "state what does not vary as a case file does"
+                    raise self._wrong(_place(key), shown(value), allowed, remedy)
                 seen.add(key)
                 yield key, value
 
     def _listed(self, key: str, values: list[Any]) -> list[Value]:
-        if not values or len(set(map(repr, values))) < len(values):
+        if len(set(map(repr, values))) < len(values):
             allowed = "a list of different values"
             raise self._wrong(_place(key), shown(values), allowed, "name each once")
         if len(values) > _LONGEST_LIST:
@@ -317,16 +335,24 @@ class _Base:
             base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._file.path.parent / case, "case file")
-            found = checked_run(file.tables, file.place)  # errors are on its own lines
-            if isinstance(found, PlanarRun) and found.model is not None:
-                remedy = "a study sweeps our models"
-                raise InputError(file.place(["model"]), "of a study", "left out", remedy)
+            checked_run(_without_model(file), file.place)  # errors are on its own lines
             base = {name: t for name, t in file.tables.items() if name in RUN_TABLES}
         else:
             here, more = self._file.place(["study", "case"]), ", or the path of a .toml file"
             remedy = "leave it out to describe the case here"
             raise unknown(here, case, NAMED_TABLES, more=more, remedy=remedy)
         return {name: {**base.get(name, {}), **own.get(name, {})} for name in {**base, **own}}
+
+    def _with_first_values(self) -> dict[str, Any]:
+        """The base case's tables, with the first value of each axis that has no other there."""
+        found = {name: dict(table) for name, table in self._tables.items()}
+        for dotted, values in self._items():
+            table, *key = dotted.split(".")
+            if len(key) < 2:  # a component alone makes no place
+                self._check_key(dotted, _place(dotted))
+                first = values.get("from") if isinstance(values, dict) else values[0]
+                found.setdefault(table, {}).setdefault(key[0], first)
+        return found
 
     def _path(self, name: str) -> str:
         """A mesh file's path, whole: a run may be done in another folder."""

@@ -46,6 +46,7 @@ def rig():
         ({"moment_z": 1e-3}, r"unit of moment_z \(1000 times too small\)"),
         (dict.fromkeys((*FORCES, "moment_z"), 9.80665), r"flexural rigidity \(9.807 times"),
         (dict.fromkeys((*FORCES, "moment_z"), -1.0), "likely .*all signs"),
+        (dict.fromkeys(FORCES, -1.0), "likely the signs of force_x and force_y or the signs of"),
     ],
 )
 def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, factors, likely):
@@ -87,8 +88,9 @@ def test_swapped_forces_are_named(rig):
     ],
 )
 def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):
+    """Of a vibrissa whose rigidity is to be found, and is a tenth off what the case says."""
     with pytest.raises(InputError, match=re.escape(likely)):
-        calibrate(mistaken(rig, **factors), RIG)
+        calibrate(mistaken(rig, **factors), replace(RIG, beam=Beam(0.06, 5.5e-6, 0.2e-3)))
 
 
 def test_a_moment_in_another_unit_is_no_force():

@@ -43,9 +43,7 @@ def test_a_vertex_far_away_leaves_no_faces(tmp_path):
     box = trimesh.creation.box((1, 1, 1))
     box.vertices[0] = 1e33
     box.export(tmp_path / "box.stl")
-    assert "0 faces that are not next to nothing: must be" in refusal(
-        mesh_section, tmp_path / "box.stl"
-    )
+    assert "0 triangles with an area, in a size of" in refusal(mesh_section, tmp_path / "box.stl")
 
 
 @pytest.mark.parametrize("size", [1e-38, 1e-9, 1e9, 1e37])

@@ -53,6 +53,9 @@ def test_a_missing_snap_off_is_named():
     assert "beyond the stretch that the candidate covers" in found.failures[-1]
     assert found.likely is not None
     assert found.likely.startswith("too short a sweep: it covers foot_x = ")
+    few = compare(exact, replace(short, table=short.table.iloc[::20].reset_index(drop=True)))
+    assert few.likely is not None
+    assert few.likely.startswith("too short a sweep: it covers foot_x = ")
 
 
 def test_a_snap_off_beyond_both_sweeps_is_asked_of_neither():

@@ -46,6 +46,14 @@ def test_any_separator_decimal_mark_and_encoding(tmp_path, separator, decimal, e
     assert_same(read_measured(tmp_path / "rig.txt", beam=BEAM, columns=COLUMNS))
 
 
+def test_a_file_of_labview_with_its_comments(tmp_path):
+    head = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\t\nSamples\t40\t40\t40\t40\n"
+    names = "\t".join((*TABLE.columns, "Comment\n"))
+    rows = TABLE.to_csv(index=False, header=False, sep="\t")
+    (tmp_path / "rig.lvm").write_text(f"{head}{names}{rows}")
+    assert_same(read_measured(tmp_path / "rig.lvm", beam=BEAM, columns=COLUMNS))
+
+
 def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
     path = tmp_path / "rig.csv"
     body = TABLE.assign(time="12:00:01")[["time", *TABLE.columns]].to_csv(index=False, sep=";")

@@ -67,7 +67,7 @@ def test_a_mesh_stands_beside_its_case_file(load, refused, tmp_path):
         ('["0 mm", "70 mm", "0 mm"]', '["0 mm", "70 mm"]', "body.centre.2 = missing"),
         ("tangent = [0.1, 1, 0]", "tangent = [0, 0, 0]", "direction"),
         ("stations = 20", "stations = 1", "stations"),
-        ('"70 mm", "0 mm"]', '"170 mm", "0 mm"]', "within reach"),
+        ('"70 mm", "0 mm"]', '"170 mm", "0 mm"]', "path = passing the "),
         ("[path]", "[way]", "path"),
         (
             "stations = 20",

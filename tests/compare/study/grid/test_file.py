@@ -70,6 +70,14 @@ def test_samples_repeat_with_their_seed(plan_of, method):
         assert len(set(np.floor((drawn - 0.2) / 0.6 * 50).astype(int))) == 50
 
 
+def test_what_varies_need_not_stand_in_the_case(plan_of):
+    """It was refused: "profile.radius = missing"."""
+    plan = plan_of(
+        "[profile]\nkind = 'circle'\nlowest = [0, 0.4]\n[axes]\nprofile.radius = [0.5, 1.0]\n"
+    )
+    assert [run.parameters["profile.radius"] for run in plan] == [0.5, 1.0]
+
+
 def test_units_are_read_as_in_a_case_file(plan_of):
     plan = plan_of("""
         study.beams = []
@@ -106,6 +114,8 @@ def test_a_run_keeps_its_id_wherever_its_numbers_stand(plan_of):
         ("[axes]\nbeam.radius = { from = 0.0, to = 1e-2 }\n", ["line 3", "[sample]"]),
         ("[axes]\nbeam.radius = [1e-3, 1e-3]\n", ["line 3", "different"]),
         ("[axes]\nbeam.radius = []\n", ["line 3", "different"]),
+        ("[axes]\nbeam.radius = 0.1\n", ["line 3", "a list of different values, or a range"]),
+        ("[model]\nfile = 'sound-chain'\n", ["line 2", "a study sweeps our models"]),
         ("[axes]\ncontact.friction = [0.1, -0.1]\n", ["line 3", "axes.contact.friction", "-0.1"]),
         ("[axes]\nsupport.rotational_stiffness = [1, 1e-3]\n", ["line 3", "0.001", "hundredth"]),
         ("[support]\nrotational_stiffness = 1e-3\n", ["line 3", "hundredth"]),
