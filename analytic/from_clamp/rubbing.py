@@ -20,6 +20,7 @@ from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, require_readings
 
+_BELOW = 2.0  # half intervals of 95 %: so far below zero is no chance
 _FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
 _ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
 _CLEARLY = 5.0  # standard deviations; a contact so far short of the tip is one of Phase B
@@ -85,7 +86,8 @@ def estimate_friction(
     Raises
     ------
     InputError
-        If fewer than five stations are of Phase B, or the noise is no such mapping.
+        If fewer than five stations are of Phase B, what comes out is clearly negative, or the noise
+        is no such mapping.
     """
     require_readings(readings)
     readings.require_sweep("an estimate of the friction")
@@ -104,6 +106,10 @@ def estimate_friction(
             tangent = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
         tangent &= readings.trusted
         found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
+    if found.coefficient < -_BELOW * found.uncertainty:
+        what = f"{found.coefficient:.3g} +- {found.uncertainty:.2g}"
+        remedy = "state the noise, of which what remembers hardly jumps; check signs and vibrissa"
+        raise InputError("friction that was found", what, "0 or more", remedy)
     return found
 
 
