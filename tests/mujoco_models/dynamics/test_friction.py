@@ -107,7 +107,7 @@ def test_the_motions_own_friction_is_taken_before_the_cases():
 def test_a_step_in_which_friction_overshoots_is_refused():
     """And the remedy that it states is not: with shorter steps alone contacts become stiffer."""
     settings = Settings(segments=6, obstacle="primitive")
-    refused = r"^motion\.timestep = 0\.02: must be at most .*friction.* = 1e3 and timestep = "
+    refused = r"^motion\.timestep = 0\.02: must be at most .*friction.* = 1e3, timestep = "
     with pytest.raises(InputError, match=refused) as caught:
         simulate_motion(CASE, Motion(cone="elliptic"), settings)
     step = float(str(caught.value).split()[-1])
