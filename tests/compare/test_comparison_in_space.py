@@ -145,6 +145,7 @@ def passed():
     return solve_space(replace(CASE, path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=60)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [pytest.param(1e-3, marks=pytest.mark.slow), 1e-2])
 def test_noise_neither_touches_nor_fails_what_agrees(passed, share):
     for seed in range(5):

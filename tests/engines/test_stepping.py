@@ -216,7 +216,14 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("plant", FAULTS.values(), ids=FAULTS)
+@pytest.mark.parametrize(
+    "plant",
+    [
+        pytest.param(plant, marks=pytest.mark.slow if i > len(FAULTS) - 4 else ())
+        for i, plant in enumerate(FAULTS.values())
+    ],
+    ids=FAULTS,
+)
 def test_a_fault_is_seen(example, plant):
     links = example.Links(CASE)
     plant(links)

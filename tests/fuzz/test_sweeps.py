@@ -18,6 +18,7 @@ def test_random_sweeps_have_no_silent_error(kind):
         assert not {"silent", "lost"} & set(outcome.flags), (made.label, outcome)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [pytest.param(1060030, marks=pytest.mark.slow), 1250061])
 def test_few_stations_rest_where_many_do(seed, tmp_path):
     """A tip that a long step of the foot would carry off its facet is still on it, if it can be."""

@@ -61,6 +61,7 @@ def test_files_without_a_rigs_word_show_their_noise_where_nothing_touches():
     assert not calibrate(seen, replace(UPRIGHT, profile=circle(0.3, (0.05, 0.75)))).explains
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.slow), 0.9])
 def test_another_object_is_no_noise_that_remembers(memory):
     wide = replace(UPRIGHT, profile=circle(0.3, (0.05, 0.75)))
@@ -80,6 +81,7 @@ def test_what_all_passes_leave_alike_is_no_noise():
     assert not found.explains
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_what_remembers_longer_than_a_pass_may_be_no_noise(count):
     """The same object past one pass: it left 1.1 times the noise, and was called right."""

@@ -69,6 +69,7 @@ def assert_exact(readings):
     assert set(found["status"]) == {"ok"}
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None, phases=[Phase.explicit, Phase.reuse, Phase.generate])
 @given(
     natural=st.floats(-1.2, 1.2),

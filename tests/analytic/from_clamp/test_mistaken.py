@@ -83,8 +83,16 @@ def test_swapped_forces_are_named(rig):
     ("factors", "likely"),
     [
         (dict.fromkeys(FORCES, 1e-3), "likely the unit of both forces (1000 times too small)"),
-        (dict.fromkeys((*FORCES, "moment_z"), -1.0), "all signs (the vibrissa's action"),
-        ({"moment_z": 1e3}, "likely the unit of moment_z (1000 times too large)"),
+        pytest.param(
+            dict.fromkeys((*FORCES, "moment_z"), -1.0),
+            "all signs (the vibrissa's action",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            {"moment_z": 1e3},
+            "likely the unit of moment_z (1000 times too large)",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_calibration_that_is_refused_names_the_mistake(rig, factors, likely):

@@ -45,7 +45,9 @@ def _swept(body: Body, path: FootPath, friction: float) -> SpatialReadings:
     return solve_space(SpatialCase(THIN, body=body, path=path, friction=friction))
 
 
-@pytest.mark.parametrize("name", ["dev0", "dev1", "dev2"])
+@pytest.mark.parametrize(
+    "name", ["dev0", *(pytest.param(name, marks=pytest.mark.slow) for name in ("dev1", "dev2"))]
+)
 def test_rows_of_an_own_integration(name: str) -> None:
     # dev2 may begin in two directions; the first that is found is the one that was followed there.
     rows = TABLE[TABLE["case"] == name].iloc[1:]

@@ -45,6 +45,7 @@ def with_noise(readings, share, seed):
     return noisy(readings, noise, seed), noise
 
 
+@pytest.mark.slow
 def test_exact_readings_give_the_exact_body(readings):
     found, on = reconstruct_space(readings), readings.touching
     for name in (*CONTACT_POINT, *NORMAL, "contact_arc_length"):
@@ -73,7 +74,9 @@ def test_the_uncertainty_covers_the_true_contact(readings):
     assert 0.90 < inside / total <= 1
 
 
-@pytest.mark.parametrize("share", [3e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize(
+    "share", [*(pytest.param(x, marks=pytest.mark.slow) for x in (3e-4, 1e-3)), 1e-2]
+)
 def test_free_air_is_free_whatever_the_noise(readings, share):
     """Neither stated nor seen noise is a contact, and what is clear of it is found as before."""
     on, force = readings.touching, np.linalg.norm(readings.values(*FORCE), axis=1)

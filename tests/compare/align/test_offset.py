@@ -158,7 +158,8 @@ def test_a_flat_minimum_is_a_failure():
     ("wrong", "said"),
     [
         (lambda x: {"force_x": x["force_y"], "force_y": x["force_x"]}, "force_y swapped"),
-        (lambda x: {"foot_x": 0.8 * x["foot_x"]}, "scale of the stage -2"),
+        pytest.param(lambda x: {"foot_x": 0.8 * x["foot_x"]}, "scale of the stage -2",
+                     marks=pytest.mark.slow),
         (lambda x: {"force_x": -x["force_x"], "moment_z": -x["moment_z"]},
          "opposite sign of force_x and moment_z, or the foot moves the other way"),
     ],

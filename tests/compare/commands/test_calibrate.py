@@ -85,7 +85,12 @@ def test_noise_that_is_stated_too_large_is_said():
 
 
 @pytest.mark.parametrize(
-    ("count", "said"), [pytest.param(1, True, marks=pytest.mark.slow), (2, True), (3, False)]
+    ("count", "said"),
+    [
+        pytest.param(1, True, marks=pytest.mark.slow),
+        (2, True),
+        pytest.param(3, False, marks=pytest.mark.slow),
+    ],
 )
 def test_what_one_pass_does_not_distinguish_is_said(count, said):
     """A circle 3 % off under noise that remembers was called right, of one pass, without a word."""

@@ -38,6 +38,7 @@ def turned(readings):
     return replace(readings, table=table)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "family", ["sphere", *(pytest.param(x, marks=pytest.mark.slow) for x in ("auto", "convex"))]
 )

@@ -92,6 +92,7 @@ def taken(beam: Beam | None = None, **support: float) -> Callable[[Case], Readin
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("made", "said", "size"),
     [
@@ -144,7 +145,9 @@ def test_without_the_contour_what_explains_badly_is_not_named():
             "facets of a coarse mesh",
             marks=pytest.mark.slow,
         ),
-        ("tip-only", Settings(contact_stiffness=5e3), "softness"),
+        pytest.param(
+            "tip-only", Settings(contact_stiffness=5e3), "softness", marks=pytest.mark.slow
+        ),
         # A second-order beam's error, and softness spread over several beads in Phase B, bear no
         # signature that is known.
         pytest.param("catenary", Settings(segments=10), None, marks=pytest.mark.slow),

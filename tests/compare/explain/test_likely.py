@@ -125,6 +125,7 @@ def test_readings_that_are_held_are_no_foot_that_jitters(rows):
     assert "held" not in (compare(exact, seen).likely or "")
 
 
+@pytest.mark.slow
 def test_noise_that_hardly_jumps_is_there_without_a_contact_too():
     """It was "the readings alone do not show why"; what is wrong in contact alone is no noise."""
     exact = solve_sweep(replace(named_case("parabola"), sweep=Sweep(200)))
@@ -177,6 +178,7 @@ def test_who_touches_is_not_said_never_to_touch(made, said):
     assert ("never touches" in found.likely) == (made is mute)
 
 
+@pytest.mark.slow
 def test_two_objects_are_no_clamp_that_gives_way():
     """A parabola against a circle was "clamp stiffness about 5.59 EI/L"."""
     one, other = (

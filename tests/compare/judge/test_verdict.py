@@ -52,7 +52,10 @@ def of_length(size: float, spoil) -> str:
 @pytest.mark.parametrize(
     "spoil",
     [
-        lambda exact, size: changed(exact, foot_x=exact.table["foot_x"] + 0.02 * size),
+        pytest.param(
+            lambda exact, size: changed(exact, foot_x=exact.table["foot_x"] + 0.02 * size),
+            marks=pytest.mark.slow,
+        ),
         lambda exact, size: changed(exact, rows=slice(0, 120)),
         lambda exact, size: changed(
             exact,

@@ -58,7 +58,9 @@ def test_a_bend_too_weak_to_be_seen_is_within_what_is_said():
 
 
 @pytest.mark.parametrize("rigs", [3, pytest.param(40, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("memory", [0.0, 0.7, 0.97, 0.99])
+@pytest.mark.parametrize(
+    "memory", [0.97, *(pytest.param(rho, marks=pytest.mark.slow) for rho in (0.0, 0.7, 0.99))]
+)
 def test_a_straight_drift_stays_a_line(memory, rigs):
     """In noise that remembers for as long as its stretches are, too: 60 of 100 seemed to bend."""
     shown = [passes("line", 10, seed, memory)[1][0].shows for seed in range(rigs)]

@@ -52,7 +52,7 @@ def rig(folder, change=lambda x: x, before=0.2, after=0.2, kind="white", seed=0)
     return [folder / "pass.csv"], read_rig(folder / "rig.toml")
 
 
-@pytest.mark.parametrize("kind", ["white", "walk"])
+@pytest.mark.parametrize("kind", [pytest.param("white", marks=pytest.mark.slow), "walk"])
 def test_a_zero_is_handed_on_with_its_uncertainty(tmp_path, kind):
     """In the middle of the pass the line of two stretches has 1/sqrt(2) of the error of one.
 
@@ -274,7 +274,7 @@ def test_a_cell_of_nonsense_is_left_out_wherever_it_is(tmp_path, rows, channel):
     assert np.nanmax(np.abs(one.readings.table.to_numpy())) < 100
 
 
-@pytest.mark.parametrize("kind", ["white", "walk"])
+@pytest.mark.parametrize("kind", ["white", pytest.param("walk", marks=pytest.mark.slow)])
 def test_no_sweep_has_spikes_of_its_own(tmp_path, kind):
     """Nor where it snaps off, next to which a reading grows ever faster."""
     for seed in range(12):

@@ -109,6 +109,7 @@ FLAT = prism(parabola(0.005, 0.6), (0.1, 0.05, 1)), [[9.8, 0.1], [7.4, 0.0]]
 BESIDE = prism(circle(0.17, (0.0, 0.594)), (0.368, 0.412, 0.834)), [[0.4, 0.02], [-0.4, 0.01]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "points"), [FLAT, BESIDE])
 def test_prisms_are_touched_where_they_are_flat(body, points):
     """A cylinder of 100 L was off by more than rest allows, and a side had none."""

@@ -43,7 +43,14 @@ def test_against_the_closed_form(case):
     assert errors[0] / errors[1] > 2
 
 
-@pytest.mark.parametrize("beam", [beam for beam in available_beams() if beam != "cable"])
+@pytest.mark.parametrize(
+    "beam",
+    [
+        pytest.param(beam, marks=pytest.mark.slow if beam != "chain" else ())
+        for beam in available_beams()
+        if beam != "cable"
+    ],
+)
 def test_what_touches_nothing_hangs_as_it_should(beam):
     case = Case(profile=ROUND, sweep=Sweep(2, start=3.0, stop=2.0), weight=(2.0, -6.0))
     exact = solve_sweep(case).table.iloc[0]

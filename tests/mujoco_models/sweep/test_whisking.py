@@ -56,7 +56,7 @@ def swept(name, segments, springs="linear"):
 
 
 @pytest.mark.parametrize("beam", [name for name in available_beams() if name != "cable"])
-@pytest.mark.parametrize("angle", [0.0, 0.2])
+@pytest.mark.parametrize("angle", [pytest.param(0.0, marks=pytest.mark.slow), 0.2])
 def test_a_path_at_one_angle_is_a_sweep(beam, angle):
     """To the tolerance of rest; to the last bit where the path's travel does not round."""
     sweep = Case(Beam(natural_curvature=-0.2), CIRCLE, clamp_angle=angle).between(1.1, -1.3, 12)

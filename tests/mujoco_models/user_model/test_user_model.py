@@ -182,7 +182,7 @@ def test_wherever_the_vibrissa_stands_and_points(tmp_path, plain):
     ("joint", "actuator"),
     [
         ("", ""),
-        ('damping="0"', '<velocity joint="rail" kv="1e5"/>'),
+        pytest.param('damping="0"', '<velocity joint="rail" kv="1e5"/>', marks=pytest.mark.slow),
         ('damping="1e3"', '<position joint="rail" kp="1e6" kv="1e4"/>'),
     ],
 )

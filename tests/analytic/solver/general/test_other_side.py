@@ -30,7 +30,10 @@ def beam_of(natural, radius):
     return Beam(radius=radius, natural_curvature=natural)
 
 
-@pytest.mark.parametrize(("natural", "friction", "radius"), SWEPT)
+@pytest.mark.parametrize(
+    ("natural", "friction", "radius"),
+    [SWEPT[0], *(pytest.param(*one, marks=pytest.mark.slow) for one in SWEPT[1:])],
+)
 def test_references_of_sweeps(natural, friction, radius):
     rows = rows_of(natural, friction, radius)
     beam = beam_of(natural, radius)

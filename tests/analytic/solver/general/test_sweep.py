@@ -221,6 +221,7 @@ def test_an_object_that_is_widest_where_the_tip_is(friction):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("corners", [16, pytest.param(64, marks=pytest.mark.slow)])
 def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
     """Curved towards a polygon the vibrissa touches two corners on half of its way: 3e-4 L deep.

@@ -177,8 +177,14 @@ def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
     "varied",
     [
         lambda little: {"beam": Beam(tip_radius=0.005 * (1 - little))},
-        lambda little: {"beam": Beam(flexural_rigidity=lambda s: 1 + little * s)},
-        lambda little: {"beam": Beam(natural_curvature=lambda s: little * s)},
+        pytest.param(
+            lambda little: {"beam": Beam(flexural_rigidity=lambda s: 1 + little * s)},
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            lambda little: {"beam": Beam(natural_curvature=lambda s: little * s)},
+            marks=pytest.mark.slow,
+        ),
         lambda little: {"beam": Beam(natural_curvature=little)},
         lambda little: {"clamp_stiffness": 1 / little},
         lambda little: {"friction": little},

@@ -43,7 +43,14 @@ THIN = Beam(radius=0.0)
 BUCKLES = 7.837347438943  # w L^3/EI = 9/4 j^2, j the first zero of the Bessel function J_-1/3
 
 
-@pytest.mark.parametrize("of_case", [rows for _, rows in ROWS.groupby("case")], ids=len)
+@pytest.mark.parametrize(
+    "of_case",
+    [
+        pytest.param(rows, marks=pytest.mark.slow if i else ())
+        for i, (_, rows) in enumerate(ROWS.groupby("case"))
+    ],
+    ids=len,
+)
 def test_references(of_case):
     first = of_case.iloc[0]
     profile, weight = PROFILES[first["profile"]], (first["weight_x"], first["weight_y"])
