@@ -3,6 +3,8 @@
 Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
 """
 
+import os
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -62,9 +64,15 @@ def progress(what: str, total: int | None = None) -> Iterator[Callable[[], None]
         yield lambda: bar.advance(task)
 
 
+class _Output(Console):
+    def on_broken_pipe(self) -> None:
+        """Who read has gone, as `head` does: the work goes on, and its exit code is its own."""
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def console() -> Console:
     """Standard output, as it is now: tests and notebooks replace it."""
-    return Console(highlight=False)
+    return _Output(highlight=False)
 
 
 def keep(path: Path, content: "str | bytes | Mapping[str, Any] | DataFrame | Figure") -> None:

@@ -173,3 +173,12 @@ def test_strange_environments(tmp_path, strange, commands, said):
     assert done.stderr.count(b"\n") == 1, done.stderr  # of the last one
     assert said.encode() in done.stderr
     assert (tmp_path / "ü" / "report.html").exists() == (commands == ALL)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("model", "code"), [("sound-chain", 0), ("mistakes", 1)])
+def test_who_reads_no_further_changes_no_verdict(model, code):
+    """As `| head` does: the code of what agrees was 1."""
+    with subprocess.Popen([*COMMAND, "inspect", model], **PIPES) as run:
+        run.stdout.close()
+        assert run.wait(60) == code
