@@ -131,7 +131,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
         shade_reference(ax, comparison)
         ax.axhline(expected, color=style.GREY, linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"(2 force_y - moment_z$^2$) / $2f$" + "\nzero in Phase B")
-    axes[0].ticklabel_format(axis="y", scilimits=(-1, 2))
+    axes[0].ticklabel_format(axis="y", scilimits=(-2, 2))
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
     axes[1].set_xlabel(
         f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"
