@@ -41,6 +41,7 @@ class _Mistake:
         return replace(readings, table=readings.table.assign(**right))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of 1e300 a unit makes what is no number
 def likely_mistakes(
     readings: Readings, counted: Booleans, most: bool, unsure: bool = False
 ) -> list[str]:
@@ -53,10 +54,10 @@ def likely_mistakes(
         return []
     some = replace(readings, table=readings.table.iloc[thin].reset_index(drop=True))
     loaded = counted[thin]
-    # The unit of one force explains much: what is far too large is of a tip, whatever the others
-    # are. It is named only where most readings need one and nothing else does.
     if unsure and _explains(some, loaded, unsure):
         return []
+    # The unit of one force explains much: what is far too large is of a tip, whatever the others
+    # are. It is named only where most readings need one and nothing else does.
     found = _explaining(_mistakes(), some, loaded, unsure)
     return found or (_explaining(_of_one_force(), some, loaded, unsure) if most else [])
 

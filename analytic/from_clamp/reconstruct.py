@@ -34,6 +34,7 @@ _MANY = 0.2  # of the stations; of good readings with 3 % of noise up to an eigh
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
 
+@np.errstate(over="ignore", invalid="ignore")  # readings of 1e300 are of no contact
 def reconstruct(
     readings: Readings,
     noise: Mapping[str, float] | None = None,

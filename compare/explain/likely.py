@@ -36,6 +36,7 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     return "; else ".join(filter(None, (f"two objects: {one}, and the candidate's {other}", cause)))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a reading of 1e150 has a cause, too
 def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
     """What explains nearly all of a disagreement past one object.
 

@@ -15,6 +15,7 @@ from compare.measure.measurement import Measurement
 from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
 
+_DROWNS = 0.1  # of a largest magnitude; beside more noise that is only estimated, nothing agrees
 _FOLLOWS, _READINGS, _FIRST = -1, 1, 2  # weights of a failure, beside 0
 
 
@@ -123,6 +124,10 @@ def _components(
     length, (size, _) = found.reference.beam.length, found.reference.running_unit
     for name, one in found.disagreement.items():
         level = noise.level[name]
+        if level > _DROWNS and name in noise.unsure:
+            said = f"jumps from station to station by {level:.0%} of its largest magnitude"
+            most = f"beyond {_DROWNS:.0%} no agreement shows; state the noise, or add stations"
+            yield Failure(name, said, most, excess=level / _DROWNS, weight=_READINGS)
         most = max(one.rms_by_phase, key=one.rms_by_phase.__getitem__, default="")
         which = f", most in phase {most}" if most else ""
         asked = [(which, one.rms, limits.of(name, "rms"), one.stations, True)]
