@@ -317,7 +317,7 @@ def _swept(
     solve: Callable[[Any], Any],
     simulate: Callable[[Any, Any], Any],
 ) -> Callable[..., Any]:
-    """Sweeps of a case: the closed form's; of a beam, or of words that change settings, MuJoCo's."""
+    """Sweeps of a case: the closed form's; with a beam, or words of settings, MuJoCo's."""
 
     def made(beam: BeamKind | None = None, **words: Any) -> Any:  # noqa: ANN401
         if beam is None and not words:
