@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from analytic.checks.integration import integrate_span
-from analytic.from_clamp.by_method import reconstruct_earlier
 from analytic.from_clamp.contact import (
     LONGEST,
     UNLOADED,
@@ -18,6 +17,7 @@ from analytic.from_clamp.contact import (
     dimensionless,
     sides,
 )
+from analytic.from_clamp.earlier import reconstruct_earlier
 from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import judge_phases
@@ -60,7 +60,7 @@ def reconstruct(
     method : str
         ``"elastica"`` is the closed form, ``"decision"`` the paper's way
         (`reconstruct_by_decision`); the names of earlier methods are in
-        `analytic.from_clamp.earlier.methods.METHODS`, and what they return is in
+        `analytic.from_clamp.earlier.METHODS`, and what they return is in
         `reconstruct_earlier`.
 
     Returns

@@ -8,23 +8,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
-from analytic.problem.case_shown import described, draw, ways
-from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
+from analytic.problem.beam import Beam, Unloaded
+from analytic.problem.clamp_path import ClampWay, Direction, Pose, Poses, Sweep, TurningWay, along_x
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.digest import digest_of
-from analytic.problem.ends import check_ends, first_contact, sign_of, start_of, stop_of
 from analytic.problem.errors import InputError, require
-from analytic.problem.limits import AnyCase, given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import Pose, Poses, along_x
-from analytic.problem.provenance import recorded_contours
-from analytic.problem.reach import contact_range
+from analytic.problem.reach import (
+    check_ends,
+    contact_range,
+    first_contact,
+    sign_of,
+    start_of,
+    stop_of,
+)
 from analytic.problem.rest import FirstTouch, first_on_way, first_touch
-from analytic.problem.shown import Shown, new_figure
-from analytic.problem.support import Support, check_support, support_record
-from analytic.problem.unloaded import Unloaded
+from analytic.problem.shown import Shown, described, draw, new_figure, ways
+from analytic.problem.support import (
+    AnyCase,
+    Support,
+    check_support,
+    given_contour,
+    recorded_contours,
+    support_record,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.contours.contour import Contour, ContourPoint, ConvexMesh
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import points_of, positive
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Pose, Poses
 from analytic.solver.general.pair import Pair
 from analytic.solver.general.path import Path, refined
 from analytic.solver.general.states import States, Vibrissa, misses, rates_at, states_at

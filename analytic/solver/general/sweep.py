@@ -8,9 +8,9 @@ import numpy as np
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Poses
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses
 from analytic.problem.reach import contact_range
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
 from analytic.solver.general.chain import (

@@ -17,8 +17,13 @@ from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
-from analytic.space.from_clamp.noise import component_noise, felt, over_units
-from analytic.space.from_clamp.reconstruct import ClampInSpace, of_one_vibrissa
+from analytic.space.from_clamp.reconstruct import (
+    ClampInSpace,
+    component_noise,
+    felt,
+    of_one_vibrissa,
+    over_units,
+)
 from analytic.space.problem.bodies.body import Body, across
 from analytic.space.problem.readings import SpatialReadings
 
