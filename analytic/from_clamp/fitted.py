@@ -32,10 +32,7 @@ class Fitted(Shown):
             self.family: "explains the readings"
             if self.explains
             else "does not explain the readings",
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
+            **self.found,
             "misfit": f"{self.misfit:.3g}",
             "stations": self.stations,
         }

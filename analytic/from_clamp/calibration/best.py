@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from analytic.problem.errors import InputError
 _CLEARLY = 4.0  # standard deviations; by chance once in 10^4 sweeps
 _JITTER_ROUNDS = 100  # of expectation and maximum: 1e-3 of the sizes
 
-AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
 
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
@@ -65,7 +63,9 @@ def foot_jitter(
     return float(np.sqrt(variance)), np.sqrt(own)
 
 
-def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
+def fitted_to_noise(
+    fit: LeastSquaresFit, stated: bool
+) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
     jittered = _with_jitter(fit, numbers) if cost > ROUNDING**2 * fit.freedom else None
@@ -95,7 +95,7 @@ def below_the_noise(misfit: float, freedom: int) -> bool:
     return bool(misfit < 1 / _NOISE_KNOWN_TO - _CHANCE * np.sqrt(1 / freedom / 2))
 
 
-def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
+def _fitted(fit: LeastSquaresFit) -> tuple[LeastSquaresFit, Floats, float]:
     """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
     every = len(fit.measured.foot_x)
     thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long

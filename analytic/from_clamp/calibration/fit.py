@@ -1,17 +1,16 @@
 """Least squares: the numbers with which the closed form comes nearest to a sweep's readings."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Self, get_args
+from typing import get_args
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import OFFSET, Number, Sought, Unknown
+from analytic.from_clamp.calibration.unknowns import OFFSET, Sought, Unknown
+from analytic.from_clamp.object.families import Family
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
@@ -97,17 +96,29 @@ def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:
     return (case.mirrored(), -foot_x) if case.sweep.direction == "right" else (case, foot_x)
 
 
-class LeastSquaresFit(ABC):
+class LeastSquaresFit:
     """The sum of squares over some numbers, each station weighed by its noise.
+
+    The numbers are unknowns of the vibrissa and its sweep, behind those of the object's contour if
+    it is of a `family` and not as given: fits then start from some `objects`.
 
     Noise of the foot position moves all three readings of its station along their slopes over the
     foot position; both enter the station's covariance.
     """
 
-    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Number]) -> None:
-        self.measured, self.given, self.kinds = measured, given, kinds
-        self.lowest = np.array([kind.lowest for kind in kinds])
-        self.highest = np.array([kind.highest for kind in kinds])
+    def __init__(
+        self,
+        measured: Measured,
+        given: Case,
+        unknowns: Sequence[Unknown],
+        family: Family | None = None,
+        objects: Sequence[Floats] = (),
+    ) -> None:
+        self.measured, self.given, self.unknowns = measured, given, unknowns
+        self.family, self.objects = family, objects
+        self.kinds = (*(family.kinds if family else ()), *unknowns)
+        self.lowest = np.array([kind.lowest for kind in self.kinds])
+        self.highest = np.array([kind.highest for kind in self.kinds])
         self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
         # All passes to one side are solved as one sweep, whose stations are in order; where they
         # are many, at some of them.
@@ -128,19 +139,37 @@ class LeastSquaresFit(ABC):
     def freedom(self) -> int:
         return self.measured.readings.size - len(self.kinds)
 
-    @abstractmethod
+    def of_object(self, numbers: Floats) -> Floats:
+        return numbers[: len(self.kinds) - len(self.unknowns)]
+
     def sought(self, numbers: Floats) -> Sought:
-        """What these numbers make of the case."""
+        """The vibrissa, the object and the sweep with these numbers."""
+        case = self.given
+        if self.family:
+            profile = self.family.profile(self.of_object(numbers))
+            case = replace(case, profile=profile.scaled(case.beam.length))
+        found, others = Sought(case), numbers[len(self.kinds) - len(self.unknowns) :].tolist()
+        for unknown, number in zip(self.unknowns, others, strict=True):
+            found = unknown.tried(found, self.given, number)
+        return found
 
-    @abstractmethod
     def starts(self) -> list[Floats]:
-        """From where the best numbers are sought."""
+        """From objects that are alike; else the case's own, others one by one, an offset's."""
+        now = np.array([one.now(Sought(self.given), self.given) for one in self.unknowns])
+        if self.family:
+            every = (np.append(one, now) for one in self.objects)
+            return [np.clip(one, self.lowest, self.highest) for one in every]
+        named, this = [one.name for one in self.unknowns], np.eye(len(now), dtype=bool)
+        found = [now]
+        for i, unknown in enumerate(self.unknowns):
+            found += [np.where(this[i], number, now) for number in unknown.starts]
+        if OFFSET in named:
+            found.append(np.where(this[named.index(OFFSET)], self._offset(), now))
+        return found
 
-    def of(self, measured: Measured) -> Self:
+    def of(self, measured: Measured) -> "LeastSquaresFit":
         """The same of other readings."""
-        other = copy(self)
-        LeastSquaresFit.__init__(other, measured, self.given, self.kinds)
-        return other
+        return LeastSquaresFit(measured, self.given, self.unknowns, self.family, self.objects)
 
     def expected(self, numbers: Floats) -> Floats:
         """The readings that these numbers make one expect."""
@@ -251,32 +280,6 @@ class LeastSquaresFit(ABC):
         covariance = np.diag(np.square(sizes)) + moved[:, :, None] * moved[:, None, :]
         return np.linalg.cholesky(covariance)
 
-
-class VibrissaFit(LeastSquaresFit):
-    """A vibrissa that is unknown, past an object that is known."""
-
-    kinds: Sequence[Unknown]
-
-    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
-        super().__init__(measured, given, kinds)
-        self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
-
-    def starts(self) -> list[Floats]:
-        """The case's own, others one by one, and that of the most likely offset."""
-        named, this = [kind.name for kind in self.kinds], np.eye(len(self.start), dtype=bool)
-        found = [
-            self.start,
-            *(
-                np.where(this[i], number, self.start)
-                for i, kind in enumerate(self.kinds)
-                for number in kind.starts
-            ),
-        ]
-        if OFFSET in named:
-            found.append(self.start.copy())
-            found[-1][named.index(OFFSET)] = self._offset()
-        return found
-
     def _offset(self) -> float:
         """At which sweeps of the case as it was given, of whatever rigidity, look alike [L]."""
         x, measured = self.measured.foot_x, self.measured.readings
@@ -303,10 +306,3 @@ class VibrissaFit(LeastSquaresFit):
 
         tried = np.linspace(x.min() - ends.max(), x.max() - ends.min(), _OFFSETS)
         return float(max(tried.tolist(), key=alike) / self.given.beam.length)
-
-    def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa with these numbers."""
-        found = Sought(self.given)
-        for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
-            found = kind.tried(found, self.given, number)
-        return found

@@ -206,7 +206,7 @@ def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
         height, expected = family.surface(numbers, points)
         return np.concatenate([height, (expected - normals).ravel()])
 
-    found = least_squares(apart, family.start(points, normals), loss="soft_l1", f_scale=_OFF)
+    found = least_squares(apart, family.start, loss="soft_l1", f_scale=_OFF)
     return np.asarray(found.x)
 
 
