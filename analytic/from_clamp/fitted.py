@@ -39,7 +39,6 @@ class Fitted(Shown):
 
 
 def check_family(family: str, known: Sequence[str]) -> None:
-    """Refuse what is no family's name, and not ``"auto"``."""
     if family not in (*known, "auto"):
         raise unknown("family", family, (*known, "auto"))
 

@@ -297,10 +297,8 @@ class Case(AnyCase, Shown):
             return self.stations.foot_x
         return np.linspace(self._start, self._stop, self.sweep.stations)
 
-    @cached_property
-    def digest(self) -> str:
-        """A hash of the physics: equal for equal problems, whatever the case is called."""
-        return digest_of(self)
+    digest = cached_property(digest_of)
+    """A hash of the physics."""
 
     def provenance(self) -> dict[str, Any]:
         """What every engine records of the problem that it solved.
@@ -395,14 +393,6 @@ class Case(AnyCase, Shown):
             "stations": ways(self),
         }
 
-    @cached_property
-    def _first_contact(self) -> float:
-        return first_contact(self)
-
-    @cached_property
-    def _start(self) -> float:
-        return start_of(self, self._first_contact)
-
-    @cached_property
-    def _stop(self) -> float:
-        return stop_of(self)
+    _first_contact = cached_property(first_contact)
+    _start = cached_property(start_of)
+    _stop = cached_property(stop_of)

@@ -82,7 +82,6 @@ def points_of(name: str, value: object) -> Floats:
 
 
 def vector(name: str, value: ArrayLike) -> Floats:
-    """Three finite numbers."""
     return floats(name, value, (3,), "three numbers, as (0, 1, 0)")
 
 

@@ -133,12 +133,12 @@ def first_contact(case: "Case") -> float:
     return float(case.centreline.place(np.array([first]))[0][0])
 
 
-def start_of(case: "Case", touch: float) -> float:
+def start_of(case: "Case") -> float:
     """The foot position of the first station [length]."""
     start = case.require_line("a foot position to start from").start
     if start is not None:
         return start
-    return (touch - sign_of(case.direction) * _MARGIN) * case.beam.length
+    return (case._first_contact - sign_of(case.direction) * _MARGIN) * case.beam.length
 
 
 def stop_of(case: "Case") -> float:

@@ -75,7 +75,6 @@ def stacked(labels: Iterable[str], below: str, figure: "Figure | None" = None) -
 
 
 def with_unit(name: str, beam: Beam) -> str:
-    """A column's name as axes say it."""
     units = [unit for start, unit in _SI.items() if name.startswith(start)]
     return f"{name} [{units[0]}]" if beam.si else name
 
@@ -102,6 +101,5 @@ def draw(case: "Case", ax: "Axes") -> None:
 
 
 def ways(case: "Case") -> str:
-    """The stations in a few words."""
     along = case.running_values
     return f"{len(along)}, {case.sweep.running} from {along[0]:.4g} to {along[-1]:.4g}"

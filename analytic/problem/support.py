@@ -113,13 +113,7 @@ def require_weightless(who: str, held: Support) -> None:
 
 def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
     require_uniform(who, beam)
-    require_weightless(who, held)
-    for name, value, plain in (
-        ("beam.natural_curvature", beam.natural_curvature, 0.0),
-        ("clamp_stiffness", held.clamp_stiffness, math.inf),
-        ("friction", held.friction, 0.0),
-        ("clamp_angle", held.clamp_angle, 0.0),
-    ):
+    for name, (value, plain) in _numbers(beam, held).items():
         refuse(who, name, value, plain)
 
 
@@ -130,22 +124,25 @@ def refuse(who: str, name: str, value: object, plain: float) -> None:
 
 
 def beyond_the_paper(beam: Beam, held: Support) -> dict[str, Varying]:
-    """What of a vibrissa, its clamp and its contact is not the paper's."""
+    """What of a vibrissa, its clamp and its contact is not the paper's, by what it is."""
+    found = {name: value for name, (value, plain) in _numbers(beam, held).items() if value != plain}
+    return {name.removeprefix("beam.").replace("_", " "): value for name, value in found.items()}
+
+
+def _numbers(beam: Beam, held: Support) -> dict[str, tuple[Varying, float]]:
+    """What may not be the paper's, by name, and what is that."""
     tip_radius = beam.radius if beam.tip_radius is None else beam.tip_radius
-    numbers: tuple[tuple[str, Varying, float], ...] = (
-        ("tip radius", tip_radius, beam.radius),
-        ("natural curvature", beam.natural_curvature, 0.0),
-        ("clamp stiffness", held.clamp_stiffness, math.inf),
-        ("friction", held.friction, 0.0),
-        ("clamp angle", held.clamp_angle, 0.0),
-        ("weight along x", held.weight[0], 0.0),
-        ("weight along y", held.weight[1], 0.0),
-    )
-    return {name: value for name, value, plain in numbers if value != plain}
+    return {
+        "beam.tip_radius": (tip_radius, beam.radius),
+        "beam.natural_curvature": (beam.natural_curvature, 0.0),
+        "clamp_stiffness": (held.clamp_stiffness, math.inf),
+        "friction": (held.friction, 0.0),
+        "clamp_angle": (held.clamp_angle, 0.0),
+        **{name: (w, 0.0) for name, w in zip(_WEIGHT, held.weight, strict=True)},
+    }
 
 
 def support_record(held: Support) -> dict[str, Any]:
-    """What provenance says of the clamp and the contact."""
     if held.is_plain:
         return {}
     stiffness = held.clamp_stiffness if held.clamp_stiffness < math.inf else None
@@ -180,7 +177,6 @@ class OfVibrissa:
 
     @property
     def beyond_the_paper(self) -> dict[str, Varying]:
-        """What of vibrissa, clamp and contact is not the paper's, by what it is."""
         return beyond_the_paper(self.beam, self.support)
 
     def require_sweep(self, who: str) -> object:
@@ -194,8 +190,6 @@ class OfVibrissa:
 
 
 class AnyCase(OfVibrissa):
-    """What there may be in a case."""
-
     sweep: ClampWay
     others: tuple[Contour, ...]
 

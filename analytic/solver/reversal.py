@@ -324,7 +324,6 @@ def _table(columns: ReadingColumns) -> pd.DataFrame:
 
 
 def _fill(columns: ReadingColumns, where: Booleans, case: Case, z: Floats, angle: Floats) -> None:
-    """Write states at rest into the rows of a table."""
     units, held = Units.of(case.beam), Vibrissa.of_case(case)._replace(friction=np.tan(angle))
     found = states_at(case.centreline, z, held)
     solved = without_inexact(to_columns(found, units), held, units)

@@ -17,8 +17,8 @@ from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.problem.errors import InputError
 from analytic.solver.columns import Units, to_columns
-from analytic.solver.general.states import Vibrissa
-from analytic.solver.general.stations import slopes_at, solve_beside
+from analytic.solver.general.states import Vibrissa, rates_at
+from analytic.solver.general.stations import solve_beside
 from analytic.solver.general.sweep import solve
 
 _AT_ONCE = 4096  # stations: their intermediate results stay in the processor's cache
@@ -63,11 +63,10 @@ class Expected:
 
     @cached_property
     def _slopes(self) -> Floats:
-        """What several cases beside this one start from."""
         case, _ = _to_the_left(self.case, np.empty(0))
         line, vibrissa = case.centreline, Vibrissa.of_case(case)
         pieces = (self.places[some] for some in _pieces(len(self.places)))
-        return np.concatenate([slopes_at(line, vibrissa, some) for some in pieces])
+        return np.concatenate([rates_at(line, some, vibrissa)[1] for some in pieces])
 
 
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
@@ -143,7 +142,6 @@ class LeastSquaresFit:
         return numbers[: len(self.kinds) - len(self.unknowns)]
 
     def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa, the object and the sweep with these numbers."""
         case = self.given
         if self.family:
             profile = self.family.profile(self.of_object(numbers))
@@ -168,11 +166,9 @@ class LeastSquaresFit:
         return found
 
     def of(self, measured: Measured) -> "LeastSquaresFit":
-        """The same of other readings."""
         return LeastSquaresFit(measured, self.given, self.unknowns, self.family, self.objects)
 
     def expected(self, numbers: Floats) -> Floats:
-        """The readings that these numbers make one expect."""
         found = self._solved(numbers)
         if found is None:
             return np.full_like(self.measured.readings, np.nan)

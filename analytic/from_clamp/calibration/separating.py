@@ -28,7 +28,6 @@ class Undistinguished:
     sweeps: dict[str, float]  # by further sweep, what it multiplies that interval by, best first
 
     def said(self) -> Iterator[str]:
-        """What a user should know of it, a line each."""
         changes = ", ".join(f"{name} {change:+.2g}" for name, change in self.along.items())
         yield f"hardly distinguished (95 %), all at once: {changes}"
         if self.sweeps:

@@ -83,7 +83,6 @@ class Polygon(Contour):
         return replace(self, vertices=self.vertices + np.array([0.0, height]), solid=None)
 
     def mirrored(self) -> "Polygon":
-        """The mirror image: x becomes -x; the vertices still run from left to right."""
         vertices = self.vertices[::-1] * [-1, 1]
         return replace(
             self,

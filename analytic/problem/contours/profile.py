@@ -253,7 +253,6 @@ class Profile(Contour):
         )
 
     def mirrored(self) -> "Profile":
-        """The mirror image: x becomes -x and alpha becomes -alpha."""
         low, high = self.alpha_range
         return self._changed(
             xi=partial(_mirrored, self.xi, -1),

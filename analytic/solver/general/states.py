@@ -208,7 +208,6 @@ class States(NamedTuple):
 
     @property
     def side(self) -> Integers:
-        """What touches: -1 the front, 0 the tip, 1 the back."""
         return self.vibrissa.side(self.excess)
 
     @property

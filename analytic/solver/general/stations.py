@@ -26,11 +26,6 @@ def solve_beside(
     return states_at(contour, z, vibrissa)
 
 
-def slopes_at(contour: Contour | Pair, vibrissa: Vibrissa, z: Floats) -> Floats:
-    """Derivatives of what states miss by contour parameter, force and excess."""
-    return rates_at(contour, z, vibrissa)[1]
-
-
 def solve_near(
     contour: Contour | Pair,
     vibrissa: Vibrissa,
@@ -45,7 +40,7 @@ def solve_near(
         return misses(states_at(contour, z, vibrissa), here)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        return slopes_at(contour, vibrissa, z) if slopes is None else slopes[which]
+        return rates_at(contour, z, vibrissa)[1] if slopes is None else slopes[which]
 
     z, missed = solve(missed_at, jacobian, start)
     return z, missed <= _BALANCED * np.maximum(1.0, np.abs(pose.foot_x))

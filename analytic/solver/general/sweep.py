@@ -94,7 +94,6 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
 
 
 def _pieces(paths: Sequence[Path], holder: Integers) -> Iterator[tuple[Path, Integers]]:
-    """Some stations of a path, then others."""
     for i, path in enumerate(paths):
         held = np.flatnonzero(holder == i)
         for first in range(0, len(held), AT_ONCE):

@@ -23,7 +23,6 @@ class Family(NamedTuple):
 
 
 def families(points: Floats, normals: Floats) -> dict[str, Family]:
-    """All of them, for contacts at these points."""
     ball = _middle(points, normals)
     every = (
         Family(

@@ -255,7 +255,6 @@ class ClampInSpace(NamedTuple):
 
     @classmethod
     def of(cls, readings: SpatialReadings) -> "ClampInSpace":
-        """Of a sweep."""
         beam = readings.beam
         return cls(
             readings.values(*FOOT) / beam.length,
@@ -266,7 +265,6 @@ class ClampInSpace(NamedTuple):
         )
 
     def at(self, which: Booleans | Integers) -> "ClampInSpace":
-        """Some of the stations."""
         foot, force, moment = (values[which] for values in self[:3])
         return self._replace(foot=foot, force=force, moment=moment)
 
@@ -276,7 +274,6 @@ class ClampInSpace(NamedTuple):
         return np.hstack([self.force, self.moment])
 
     def feeling(self, components: Floats) -> "ClampInSpace":
-        """The same with another force and moment."""
         return self._replace(force=components[:, :3], moment=components[:, 3:])
 
     def contacts(self) -> Floats:

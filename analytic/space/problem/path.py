@@ -150,7 +150,6 @@ class StraightVibrissa:
         return np.asarray(self._corners[leg] + (travel - self.marks[leg]) * self._slopes[leg])
 
     def onward(self, travel: float) -> Floats:
-        """Which way the foot goes from there."""
         return np.asarray(self._slopes[self._leg(travel)])
 
     def _leg(self, travel: float) -> int:
@@ -172,15 +171,12 @@ class StraightVibrissa:
         return high
 
     def next_touch(self, begin: float) -> float | None:
-        """Where the straight vibrissa touches, from where it is clear."""
         return first_touch(self._size, begin, self._corners_after(begin), _EXACT)
 
     def next_clear(self, begin: float) -> float | None:
-        """Where the straight vibrissa is clear of the body again."""
         return first_clear(self._size, begin, self._corners_after(begin), _EXACT)
 
     def nearest(self) -> tuple[float, Gap]:
-        """Where the straight vibrissa is nearest to the body."""
         at = self._least(self._size)
         return at, self.gap(at)
 

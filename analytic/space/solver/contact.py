@@ -69,7 +69,6 @@ class Loaded(NamedTuple):
 
 
 def loaded_part(rotation: float, alpha: float) -> Loaded:
-    """A vibrissa loaded at its end."""
     w, a = np.array(rotation), np.array(alpha)
     with np.errstate(all="ignore"):  # beyond an upright or level surface: not finite, and no state
         integrals = span(w, a)

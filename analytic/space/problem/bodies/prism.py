@@ -57,7 +57,6 @@ class Prism(Body):
 
     @property
     def smooth(self) -> bool:
-        """Not with the contour of a polygon."""
         return not isinstance(self.contour, Polygon)
 
     def nearest(self, x: Floats, apart: float) -> Spot:
