@@ -8,7 +8,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import within
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, require_readings
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
@@ -130,7 +130,9 @@ def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dic
     if isinstance(level, bool | str) or not 0 <= level < 1:
         remedy = "it is a share of each reading's largest magnitude"
         raise InputError("noise", level, "between 0 and 1", remedy)
-    passes = [readings] if isinstance(readings, Readings) else readings
+    passes = [*readings] if isinstance(readings, Sequence) else [readings]
+    for one in passes:
+        require_readings(one)
     return {
         name: float(level) * max(largest(one.values(name)) for one in passes)
         for name in CLAMP_READINGS

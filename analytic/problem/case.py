@@ -89,7 +89,7 @@ class Case(AnyCase, Shown):
             self._put_in_order()
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
-            ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
+            ("profile", Contour, "as catenary(0.5, -0.8), or a case's profile"),
             (
                 "sweep",
                 ClampWay,

@@ -112,8 +112,7 @@ def named_case(name: str) -> Case:
         If there is no case of that name.
     """
     if name not in NAMED_TABLES:
-        more, remedy = ", or a TOML file", "see `vibrissa list cases`"
-        raise unknown("case", name, NAMED_TABLES, more=more, remedy=remedy)
+        raise unknown("case", name, NAMED_TABLES, remedy="`compare.load_case` reads a TOML file")
     tables = NAMED_TABLES[name]
     return Case(
         Beam(**tables.get("beam", {})),

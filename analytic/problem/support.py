@@ -161,7 +161,7 @@ def support_of(provenance: Mapping[str, Any]) -> Support:
 
 def given_contour(profile: Contour, beam: Beam) -> Contour:
     """What the centreline feels, a cone's at its tip, in units of the vibrissa's length."""
-    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or a case's profile")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     return profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
 

@@ -84,7 +84,7 @@ def solve_contact(
     held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam, signed=True)
     try:
-        angles = np.atleast_1d(np.asarray(alpha, dtype=float))
+        angles = np.atleast_1d(np.asarray(alpha, dtype=float)).ravel()
     except (TypeError, ValueError) as error:
         raise InputError("alpha", repr(alpha)[:80], "numbers", "angles are in rad") from error
     outside = ~(np.abs(angles) <= np.pi / 2)
