@@ -127,9 +127,9 @@ class Comparison(Judged[Readings], Measurement):
         agreement = self.phase_agreement()
         return {
             "likely": self.likely,
-            "offset": asdict(self.offset),
+            "offset": self.offset,
             **({} if self.validation is None else {"validation": self.validation.to_dict()}),
-            "disagreement": {name: asdict(one) for name, one in self.disagreement.items()},
+            "disagreement": self.disagreement,
             "phases": {
                 "agreement": min(agreement.values()) if agreement else None,
                 "agreement_by_sweep": agreement,
@@ -290,8 +290,15 @@ def compare(
         if offset != 0:
             raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
         candidate = require("candidate", candidate, SpatialReadings, _AS_TABLE)
-        in_space = checked_limits(tolerances, SpatialTolerances)
-        return _in_space(reference, candidate, in_space, noise, frame)
+        limits = checked_limits(tolerances, SpatialTolerances)
+        limits = limits if in_segments(candidate) else limits.by_convention()
+        check_same_stations(reference, candidate)
+        scales = component_scales(reference)
+        level = component_levels(reference, candidate, noise, scales)
+        stated = {name: level[name] * scales[name] for name in level}
+        in_space = measure_in_space(reference, candidate, stated, frame)
+        widened = spatial_allowance(reference, level, stated, in_space.touching.clear)
+        return SpatialComparison(**vars(in_space), tolerances=limits, noise=widened)
     if frame != "world":
         raise InputError("frame", repr(frame), "'world' in the plane", "leave it out")
     reference = require("reference", reference, Readings, _AS_TABLE)
@@ -302,26 +309,8 @@ def compare(
         allowance = noise_allowance(reference, noise_level(reference, found.candidate))
     else:
         allowance = noise_allowance(reference, Noise(checked_level(noise)))
-    widened = {
+    events = {
         name: replace(event, uncertainty=event.uncertainty + allowance.transitions.get(name, 0.0))
         for name, event in found.events.items()
     }
-    return Comparison(**(vars(found) | {"events": widened}), tolerances=tolerances, noise=allowance)
-
-
-def _in_space(
-    reference: SpatialReadings,
-    candidate: SpatialReadings,
-    tolerances: SpatialTolerances,
-    noise: float | Literal["auto"],
-    frame: Frame,
-) -> SpatialComparison:
-    if not in_segments(candidate):
-        tolerances = tolerances.by_convention()
-    check_same_stations(reference, candidate)
-    scales = component_scales(reference)
-    level = component_levels(reference, candidate, noise, scales)
-    stated = {name: level[name] * scales[name] for name in level}
-    found = measure_in_space(reference, candidate, stated, frame)
-    allowance = spatial_allowance(reference, level, stated, found.touching.clear)
-    return SpatialComparison(**vars(found), tolerances=tolerances, noise=allowance)
+    return Comparison(**(vars(found) | {"events": events}), tolerances=tolerances, noise=allowance)

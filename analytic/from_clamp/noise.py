@@ -161,11 +161,6 @@ def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
     return np.asarray(np.maximum(stated, _SURELY * sizes), dtype=float)
 
 
-def bend_uncertainty(readings: Readings) -> Floats:
-    """What a bend of each zero's drift is known to, in the middle of a rig's pass; 0 of a line."""
-    return known_to("bend_uncertainty", readings)
-
-
 def known_to(what: str, readings: Readings) -> Floats:
     """What a rig's pass says of an uncertainty, shape (3,), in the reading's unit; 0 if nothing."""
     known = readings.provenance.get(what, {})
@@ -179,5 +174,4 @@ def covering(misses: Floats, axis: int) -> Floats:
 
 
 def largest(values: Floats) -> float:
-    """Largest magnitude of a reading."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

@@ -11,15 +11,14 @@ from analytic.numerics.batches import take
 from analytic.numerics.newton import solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.limits import given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.support import Support, check_support
+from analytic.problem.support import Support, check_support, given_contour
 from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns, without
 from analytic.solver.equilibria import equilibria

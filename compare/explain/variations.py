@@ -78,7 +78,3 @@ def on_polygon(case: Case, points: int) -> Readings:
 def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:
     """What a contact that gives way does, as if the contour lay deeper by the penetration."""
     return -signatures["radius"] * penetration / (STEP * radius)
-
-
-def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
-    return np.asarray(signatures["length"] * extension / STEP)

@@ -70,7 +70,8 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     farthest = int(np.argmax(np.sum(away**2, axis=(1, 2))))
     loaded = np.any(np.abs(mean[:, 1:]) > _TOUCHING * largest, axis=1)
     left_out = float(np.mean(~alike[loaded])) if loaded.any() else 0.0
-    kept = alike & ~_half_loaded(loaded)
+    # Loaded beside a free one, a stretch may hold rows in contact and rows of none.
+    kept = alike & ~(loaded & ~_between(loaded))
     mean, ends = mean[kept], ~_between(kept)[kept]
     # What the passes are away from the mean is averaged, not they: it is nearly straight.
     order = np.argsort(mean[:, 0])
@@ -140,14 +141,6 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
         farthest,
         bool(left.max() <= _UNLIKE * known + _STEEP),
     )
-
-
-def _half_loaded(loaded: Booleans) -> Booleans:
-    """Whether a stretch may hold rows in contact and rows of none: it is loaded beside a free one.
-
-    Of the stretches along the travel.
-    """
-    return loaded & ~_between(loaded)
 
 
 def _between(these: Booleans) -> Booleans:

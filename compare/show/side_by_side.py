@@ -18,7 +18,7 @@ from compare.show import style
 from compare.show.document import Block, Document, Items, Picture, Table, Text, Verdict, sections
 from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.numbers import object_of, short
-from compare.show.page import as_json, html, png, write_all
+from compare.show.page import Content, write_all
 
 _EDGE = 0.97  # of the picture's width
 
@@ -119,9 +119,8 @@ def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Pat
     """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
     drawn = error_against_time(found) if _timed(found) else differences(found)
-    contents: dict[str, str | bytes] = {f"{called}.html": html(document)}
-    contents |= {f"{called}.json": as_json(found.to_dict()), f"{called}.png": png(drawn)}
-    return write_all(folder, contents)
+    contents: dict[str, Content] = {".html": document, ".json": found.to_dict(), ".png": drawn}
+    return write_all(folder, {f"{called}{end}": content for end, content in contents.items()})
 
 
 def side_by_side_document(found: SideBySide) -> Document:

@@ -58,7 +58,11 @@ def budget_in_motion(
         sweeps = {name: (moved, changed) for name, (changed, moved) in of_model.items()}
     tasks = {name: (simulate, case, settings, *one) for name, one in sweeps.items()}
     rest = (sweep_as_means, case, resting, motion.average)
-    runs = _swept({**tasks, "rest": rest}, advance)
+    runs: dict[str, Readings] = {}
+    with running({**tasks, "rest": rest}, advance) as swept:
+        for name, sweep in swept.items():
+            with suppress(*[DivergedError] * (name in OPTIONAL)):
+                runs[name] = sweep.result()
     if model is not None:
         no_ours = "ours" in sweeps and "ours" not in runs
         if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
@@ -79,18 +83,6 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
         natural_curvature=found.natural_curvature,
     )
     return replace(case.shifted(), beam=beam)
-
-
-def _swept(
-    sweeps: Mapping[str, tuple[Any, ...]], advance: Callable[[], None]
-) -> dict[str, Readings]:
-    """All sweeps, but for optional ones that diverge."""
-    with running(sweeps, advance) as swept:
-        runs = {}
-        for name, sweep in swept.items():
-            with suppress(*[DivergedError] * (name in OPTIONAL)):
-                runs[name] = sweep.result()
-        return runs
 
 
 def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:

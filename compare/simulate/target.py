@@ -112,7 +112,8 @@ def find_fastest(
     target: float,
 ) -> Fastest:
     """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
-    swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
+    known = [runs[name] for name in THREE_SPEEDS if name in runs]
+    swept = {float(one.provenance["motion"]["speed"]): one for one in known}
     error = {speed: _error(exact, readings) for speed, readings in swept.items()}
     at_rest = _rms(exact, runs["rest"])
     slowest, quickest = _SPEEDS
@@ -168,7 +169,3 @@ def _rms(exact: Readings, candidate: Readings) -> float:
         return largest_rms(exact, candidate)
     except InputError:  # no station in common
         return math.inf
-
-
-def _speed(readings: Readings) -> float:
-    return float(readings.provenance["motion"]["speed"])
