@@ -14,9 +14,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from analytic.problem.case import Case
-from analytic.problem.mirror import facing, leftward
 from analytic.problem.readings import Readings
-from analytic.problem.recorder import Recorder
+from analytic.problem.recorder import Recorder, facing, leftward
 
 # L; where nothing else is asked for, a step of the foot that small which leaves the branch is at
 # its end

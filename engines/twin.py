@@ -15,10 +15,10 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Pose
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import facing, leftward
-from analytic.problem.poses import Pose
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import facing, leftward
 from engines.agreement import resultant
 from engines.linkage import Maker
 from mujoco_models.beams.layout import OF_CURVATURE

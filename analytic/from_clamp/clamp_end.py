@@ -59,7 +59,6 @@ class ClampEnd(NamedTuple):
 
     @classmethod
     def of(cls, force_x: Floats, force_y: Floats, moment: Floats, vibrissa: Vibrissa) -> "ClampEnd":
-        """What the readings say of the clamp's end."""
         direction = np.arctan2(-force_x, force_y)
         leant = vibrissa.clamp_angle - vibrissa.compliance * moment
         theta = np.pi / 2 + leant - direction
@@ -148,7 +147,6 @@ class ClampEnd(NamedTuple):
 
 
 def _contacts(end: ClampEnd) -> Floats:
-    """Arc lengths of the contacts, shape (n,)."""
     best, least = np.full(end.force.size, np.nan), np.full(end.force.size, np.inf)
     rod = end.vibrissa.rod
     for which, length, slope in _in_closed_form(end) if rod is None else _marched(end, rod):

@@ -57,7 +57,6 @@ class SweptVibrissa(NamedTuple):
 
     @classmethod
     def of(cls, readings: Readings) -> "SweptVibrissa":
-        """What a sweep is of, by its beam and its provenance."""
         foot_x = readings.values("foot_x")
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam

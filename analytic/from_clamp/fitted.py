@@ -32,17 +32,13 @@ class Fitted(Shown):
             self.family: "explains the readings"
             if self.explains
             else "does not explain the readings",
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
+            **self.found,
             "misfit": f"{self.misfit:.3g}",
             "stations": self.stations,
         }
 
 
 def check_family(family: str, known: Sequence[str]) -> None:
-    """Refuse what is no family's name, and not ``"auto"``."""
     if family not in (*known, "auto"):
         raise unknown("family", family, (*known, "auto"))
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.problem.arrays import Floats
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
 

@@ -8,23 +8,31 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
-from analytic.problem.case_shown import described, draw, ways
-from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
+from analytic.problem.beam import Beam, Unloaded
+from analytic.problem.clamp_path import ClampWay, Direction, Pose, Poses, Sweep, TurningWay, along_x
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.digest import digest_of
-from analytic.problem.ends import check_ends, first_contact, sign_of, start_of, stop_of
 from analytic.problem.errors import InputError, require
-from analytic.problem.limits import AnyCase, given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import Pose, Poses, along_x
-from analytic.problem.provenance import recorded_contours
-from analytic.problem.reach import contact_range
+from analytic.problem.reach import (
+    check_ends,
+    contact_range,
+    first_contact,
+    sign_of,
+    start_of,
+    stop_of,
+)
 from analytic.problem.rest import FirstTouch, first_on_way, first_touch
-from analytic.problem.shown import Shown, new_figure
-from analytic.problem.support import Support, check_support, support_record
-from analytic.problem.unloaded import Unloaded
+from analytic.problem.shown import Shown, described, draw, new_figure, ways
+from analytic.problem.support import (
+    AnyCase,
+    Support,
+    check_support,
+    given_contour,
+    recorded_contours,
+    support_record,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +89,7 @@ class Case(AnyCase, Shown):
             self._put_in_order()
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
-            ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
+            ("profile", Contour, "as catenary(0.5, -0.8), or a case's profile"),
             (
                 "sweep",
                 ClampWay,
@@ -289,10 +297,8 @@ class Case(AnyCase, Shown):
             return self.stations.foot_x
         return np.linspace(self._start, self._stop, self.sweep.stations)
 
-    @cached_property
-    def digest(self) -> str:
-        """A hash of the physics: equal for equal problems, whatever the case is called."""
-        return digest_of(self)
+    digest = cached_property(digest_of)
+    """A hash of the physics."""
 
     def provenance(self) -> dict[str, Any]:
         """What every engine records of the problem that it solved.
@@ -387,14 +393,6 @@ class Case(AnyCase, Shown):
             "stations": ways(self),
         }
 
-    @cached_property
-    def _first_contact(self) -> float:
-        return first_contact(self)
-
-    @cached_property
-    def _start(self) -> float:
-        return start_of(self, self._first_contact)
-
-    @cached_property
-    def _stop(self) -> float:
-        return stop_of(self)
+    _first_contact = cached_property(first_contact)
+    _start = cached_property(start_of)
+    _stop = cached_property(stop_of)

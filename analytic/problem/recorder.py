@@ -1,11 +1,14 @@
-"""A sweep's rows as they come, and the readings that they are, also if it ends early."""
+"""A sweep's rows as they come, and the readings that they are, also if it ends early.
+
+Sweeps to the right are recorded as mirror images of sweeps to the left.
+"""
 
 import platform
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -16,12 +19,31 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, WORDS, units
-from analytic.problem.errors import unknown
+from analytic.problem.errors import require, unknown
 from analytic.problem.readings import Readings, are_finite, solved_readings
 
 DIVERGED = {"phase": "free", "status": "diverged"}
 """The row of a station without numbers."""
 Kept = TypeVar("Kept")
+
+
+def leftward(case: Case) -> Case:
+    """A case whose clamp goes to the left: itself, or its mirror image."""
+    require("case", case, Case, "named_case('catenary') makes one")
+    return case if case.direction == "left" else case.mirrored()
+
+
+def keep_facing(case: Case, keep: Callable[[Readings], None]) -> Callable[[Readings], None]:
+    """What takes readings of the sweep to the left, and keeps them as those of a case."""
+    return lambda found: keep(facing(case, found))
+
+
+def facing(case: Case, found: Readings) -> Readings:
+    """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
+    if case.direction == "left":
+        return found
+    mirrored = found.mirrored()
+    return replace(mirrored, provenance={**mirrored.provenance, **case.provenance()})
 
 
 class Swept(Protocol):

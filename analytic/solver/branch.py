@@ -40,7 +40,6 @@ class Branch:
 
     @property
     def foot_x(self) -> Floats:
-        """Foot positions at the parameters [L]."""
         return self.samples.foot_x
 
     def events(self) -> dict[str, int | None]:

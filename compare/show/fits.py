@@ -14,7 +14,7 @@ from analytic.from_clamp.passes import Consistency
 from analytic.problem.quantities import QUANTITIES
 from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
-from analytic.space.from_clamp.noise import COMPONENTS
+from analytic.space.from_clamp.reconstruct import COMPONENTS
 from compare.show.document import Block, Table, Text
 from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line

@@ -5,7 +5,7 @@ from typing import overload
 
 from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.errors import require
-from analytic.problem.mirror import facing, leftward
+from analytic.problem.recorder import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import (
     Budget,

@@ -69,7 +69,8 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
         faults = inspection.faults
         # What a contact and a step are to be goes with EI, by orders where its unit was another.
         first = [] if done else [one for one in faults if one.subject == "EI" and one.edits]
-        wanted = dict.fromkeys(edit for fault in first or faults for edit in fault.edits)
+        edits = (edit for fault in first or faults for edit in fault.edits)
+        wanted = dict.fromkeys(edit.with_free_names(model) for edit in edits)
         new = [
             edit.of(model, now) if isinstance(edit, Edit) else edit
             for edit in wanted

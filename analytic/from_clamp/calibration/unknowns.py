@@ -58,15 +58,12 @@ class Unknown(Number):
 
     @property
     def called(self) -> str:
-        """What a user calls it."""
         return self.said or self.name
 
     def now(self, sought: Sought, given: Case) -> float:
-        """The number, of what is tried."""
         return self._of(sought, self.name) / self.unit(given)
 
     def tried(self, sought: Sought, given: Case, number: float) -> Sought:
-        """What is tried, with another such number."""
         value = number * self.unit(given)
         if self.name == LAG:
             return replace(sought, lag=value)

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.contours.mesh_file import MeshBody, read_body
 from analytic.problem.contours.polygon import Polygon, polygon
-from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import finite, pair, positive, within
 

@@ -10,7 +10,7 @@ and that, and the other side begins twice that earlier. With the normal force f,
 mu and slope angle alpha of the contour the force on the vibrissa is F = f sqrt(1 + mu^2) at the
 slope angle phi_F = alpha + arctan(mu): a dead force again. It acts on the surface, so that the
 couple -mu r f remains at the contact. Of a heavy vibrissa the end beyond a contact of Phase B hangs
-(`analytic.problem.hanging`), and its moment remains there, too.
+(`analytic.problem.rod`), and its moment remains there, too.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,14 +19,12 @@ import numpy as np
 
 from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.hanging import AtRest, Hung, at_rest, hang
-from analytic.problem.poses import Pose, Poses
-from analytic.problem.rod import RodProperties
+from analytic.problem.rod import AtRest, Hung, RodProperties, at_rest, hang
 from analytic.problem.support import Support
-from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
 from analytic.solver.general.span import Start, back_to_clamp
 
@@ -210,7 +208,6 @@ class States(NamedTuple):
 
     @property
     def side(self) -> Integers:
-        """What touches: -1 the front, 0 the tip, 1 the back."""
         return self.vibrissa.side(self.excess)
 
     @property

@@ -17,8 +17,13 @@ from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
-from analytic.space.from_clamp.noise import component_noise, felt, over_units
-from analytic.space.from_clamp.reconstruct import ClampInSpace, of_one_vibrissa
+from analytic.space.from_clamp.reconstruct import (
+    ClampInSpace,
+    component_noise,
+    felt,
+    of_one_vibrissa,
+    over_units,
+)
 from analytic.space.problem.bodies.body import Body, across
 from analytic.space.problem.readings import SpatialReadings
 
@@ -201,7 +206,7 @@ def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
         height, expected = family.surface(numbers, points)
         return np.concatenate([height, (expected - normals).ravel()])
 
-    found = least_squares(apart, family.start(points, normals), loss="soft_l1", f_scale=_OFF)
+    found = least_squares(apart, family.start, loss="soft_l1", f_scale=_OFF)
     return np.asarray(found.x)
 
 

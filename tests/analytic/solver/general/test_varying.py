@@ -24,10 +24,10 @@ from analytic import (
     polygon,
     solve_sweep,
 )
+from analytic.problem.beam import Unloaded
 from analytic.problem.rest import first_touch
 from analytic.problem.rod import RodProperties
 from analytic.problem.support import Support
-from analytic.problem.unloaded import Unloaded
 from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
 from analytic.solver.general.march import march
