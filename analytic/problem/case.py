@@ -180,24 +180,6 @@ class Case(AnyCase, Shown):
         along = self.running_values
         return -along / self.beam.length if self.sweep.running == "travel" else -along
 
-    def running_at(self, p: float) -> float:
-        """What the sweep runs over, at a parameter of the way to the left that solves it.
-
-        Parameters
-        ----------
-        p : float
-            The parameter.
-
-        Returns
-        -------
-        float
-            A foot position or a travel [length], or an angle of the clamp [rad].
-        """
-        if self.sweep.running == "travel":
-            return -p * self.beam.length
-        turned = p if self.direction == "left" else -p
-        return turned * self.beam.length if isinstance(self.sweep, Sweep) else -turned
-
     @cached_property
     def running_values(self) -> Floats:
         """Values of what the sweep runs over, shape (stations,)."""
@@ -240,50 +222,6 @@ class Case(AnyCase, Shown):
             return contact_range(self.centreline)
         highest = float(self.poses.at(self.way).foot_y.max())
         return contact_range(self.centreline.raised(-highest) if highest else self.centreline)
-
-    def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
-        """The same sweep between other positions of the foot.
-
-        Parameters
-        ----------
-        start, stop : float
-            [length].
-        stations : int, optional
-            As many as before if not given.
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-
-        Raises
-        ------
-        InputError
-            If the clamp turns or leaves its line on its way.
-        """
-        sweep = self.require_line("a sweep between other positions of the foot")
-        number = sweep.stations if stations is None else stations
-        return replace(self, sweep=replace(sweep, stations=number, start=start, stop=stop))
-
-    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Case":
-        """The case over its own stations, whatever else is changed of it then, or beside them.
-
-        Parameters
-        ----------
-        x : float
-            By how much the foot is farther right at each station [length].
-        angle : float
-            By how much the clamp leans more to the left there [rad].
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-        """
-        if not isinstance(self.sweep, Sweep):
-            return replace(self, sweep=self.sweep.shifted(x, angle))
-        start, stop = (float(foot) + x for foot in self.foot_x[[0, -1]])
-        return replace(self.between(start, stop), clamp_angle=self.clamp_angle + angle)
 
     @property
     def radius(self) -> float:

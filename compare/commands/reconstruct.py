@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, because
 from compare.commands.options import (
     A_RIG,
     BeamFile,
@@ -119,5 +119,5 @@ def reconstruct(
         except InputError as error:
             if good:
                 raise
-            raise error.because("what is said of the readings above comes first") from error
+            raise because(error, "what is said of the readings above comes first") from error
     return good
