@@ -115,7 +115,7 @@ def _alone(
     best, _ = best_alone([*fits, *others], weigh)
     unclear = best is None or weigh.rest(best) > _REST
     solved = [
-        _exact(fault, fit, error) if unclear or fit is best else fit
+        _exact(fault, fit, error) if unclear or weigh.convinces(fit) else fit
         for fault, fit in zip(faults, fits, strict=True)
     ]
     return [*solved, *others]
@@ -155,10 +155,10 @@ def _of_all(error: Floats) -> Iterator[Explanation]:
 
 
 def _linear(fault: Cause, error: Floats) -> Explanation:
-    """A fault by its signature; it explains nothing at a size that it cannot have."""
-    size, left, _ = fitted(error, fault.signature)
-    possible = fault.lowest <= size <= fault.highest
-    return Explanation(fault.text(size), left if possible else np.inf, size=size)
+    """A fault by its signature, at a size that it can have."""
+    size = float(np.clip(fitted(error, fault.signature).size, fault.lowest, fault.highest))
+    left = float(np.sum((error - size * fault.signature) ** 2))
+    return Explanation(fault.text(size), left, size=size)
 
 
 def _exact(fault: Cause, best: Explanation, error: Floats) -> Explanation:
@@ -238,12 +238,20 @@ def _left_by_two(faults: list[Cause], error: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         first = (gram[j, j] * due[i] - gram[i, j] * due[j]) / inner
         second = (gram[i, i] * due[j] - gram[i, j] * due[i]) / inner
-    possible = inner > _SETTLED * gram[i, i] * gram[j, j]
-    for sizes, at in ((first, i), (second, j)):
-        possible &= (sizes >= lowest[at]) & (sizes <= highest[at])
+    apart = inner > _SETTLED * gram[i, i] * gram[j, j]
     left = np.full(gram.shape, np.inf)
-    whole = float(np.sum(error**2))
-    left[i, j] = np.where(possible, whole - first * due[i] - second * due[j], np.inf)
+    for one, size, other in ((i, first, j), (j, second, i)):
+        # What would go too far goes as far as it can, and the other makes the best of that.
+        size = np.clip(size, lowest[one], highest[one])
+        beside = (due[other] - gram[i, j] * size) / gram[other, other]
+        beside = np.clip(beside, lowest[other], highest[other])
+        explained = size * (2 * due[one] - size * gram[one, one]) + beside * (
+            2 * due[other] - beside * gram[other, other] - 2 * size * gram[i, j]
+        )
+        both = apart & (size != 0) & (beside != 0)
+        left[i, j] = np.where(
+            both, np.minimum(left[i, j], np.sum(error**2) - explained), left[i, j]
+        )
     return left
 
 

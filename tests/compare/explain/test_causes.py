@@ -122,6 +122,13 @@ def test_support_that_is_stated_wrong_is_named():
     )
 
 
+@pytest.mark.slow
+def test_a_clamp_stated_as_soft_that_is_rigid_is_no_rigid_segment():
+    case = replace(named_case("tip-only"), clamp_stiffness=20.0)
+    found = compare(solve_sweep(case), taken(clamp_stiffness=np.inf)(case))
+    assert str(found.likely).startswith("clamp stiffness about inf EI/L, not 20:")
+
+
 def test_without_the_contour_what_explains_badly_is_not_named():
     """A soft clamp leaves a third of the disagreement to a rigidity that is off."""
     case = named_case("catenary")

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from compare.explain import one_or_two as module
+from compare.explain.causes import Cause
 from compare.explain.fit import Explanation
 
 STATIONS = 30
@@ -34,3 +35,16 @@ def test_two_must_leave_ten_times_less_than_one(monkeypatch, times, said):
     found = SimpleNamespace(reference=SimpleNamespace(beam=beam), offset=offset)
     text = module.one_or_two(found, table, true, seen, np.ones(3), np.zeros(3))
     assert text == said
+
+
+def test_a_fault_at_the_end_of_what_it_can_be_is_solved_there():
+    """A clamp stated as soft is rigid: its signature alone overshoots, and another fits as well."""
+    shape = np.random.default_rng(1).standard_normal((3, STATIONS))
+    soft = Cause("clamp {:.2f}".format, shape, -0.05, 1.0, lambda size: 1.1 * size * shape)
+    other = Cause("another".format, shape + 0.1 * shape[::-1], -1.0, 1.0)
+    true, error = np.zeros_like(shape), -0.055 * shape
+    weigh = module.Weigh(float(np.sum(error**2)), 0.0)
+    tried = module._alone([soft, other], [], true, error, weigh)
+    assert module.best_alone(tried, weigh)[0].text == "clamp -0.05"
+    left = module._left_by_two([soft, other], error)[0, 1]
+    assert 0 < left < weigh.all / 100
