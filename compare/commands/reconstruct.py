@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, because
 from compare.commands import options as opt
 from compare.commands.output import distinct_name, distinct_names, output_folder, waiting
 from compare.read.case import load_space_job
@@ -108,5 +108,5 @@ def reconstruct(
         except InputError as error:
             if good:
                 raise
-            raise error.because("what is said of the readings above comes first") from error
+            raise because(error, "what is said of the readings above comes first") from error
     return good

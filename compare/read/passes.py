@@ -12,6 +12,7 @@ from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.from_clamp.calibration.measured import check_size as check_decades
 from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import called
 from analytic.problem.table import as_numbers
 from compare.read import nonsense
 from compare.read.dialect import RawTable, read_text_table
@@ -114,13 +115,13 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
             continue
         foot_x = rows["foot_x"].to_numpy(copy=True)
         foot_x[nonsense.spikes(foot_x[None])] = np.nan  # no stage leaps there and back
-        called = f"{path}, pass {number}" if groups.max() > groups.min() else f"{path}"
-        nonsense.check_travel(foot_x, beam.length, called)
+        which = f"{path}, pass {number}" if groups.max() > groups.min() else f"{path}"
+        nonsense.check_travel(foot_x, beam.length, which)
         nonsense.check_back(foot_x, path.stem)
         try:
             sweeps += read_sweeps(rows.assign(foot_x=foot_x), beam)
         except InputError as error:
-            raise error.called(f"{error.name} of {called}") from error
+            raise called(error, f"{error.name} of {which}") from error
     if not sweeps:
         what = f"{len(raw)}, of which {len(raw) // max(number, 1)} to a pass"
         remedy = "is it the right file, and [passes] column the one that changes with every pass?"
