@@ -154,15 +154,11 @@ def sweep_stations(
     for target in stations:
         row = walk.go_to(target)
         unsettled.update([row.doubt] if row.doubt else [])
-        recorder.rows.append(_recorded(row))
+        columns = asdict(row)
+        status = "unsettled" if columns.pop("doubt") else "ok"
+        recorder.rows.append({**columns, "status": status})
         advance()
     return facing(case, recorder.readings())
-
-
-def _recorded(row: Row) -> dict[str, Any]:
-    columns = asdict(row)
-    status = "unsettled" if columns.pop("doubt") else "ok"
-    return {**columns, "status": status}
 
 
 class _Walk:

@@ -20,8 +20,7 @@ from scipy.special import elliprf
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.rod import RodProperties
-from analytic.solver.general.march import SpanEnd, Trail, march
-from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general.span import SpanEnd, Trail, back_to_clamp, march
 from analytic.solver.general.states import Vibrissa
 
 # Where the vibrissa is nearly square to the force at its contact (p^2 below), its moment is the

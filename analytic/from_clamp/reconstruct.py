@@ -15,13 +15,13 @@ from analytic.from_clamp.contact import (
     SweptVibrissa,
     contact_bent_right,
     dimensionless,
+    reconstruct_turning,
     sides,
 )
 from analytic.from_clamp.earlier import METHODS, NAMES, LoadedStations
 from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import judge_phases
-from analytic.from_clamp.turning import reconstruct_turning
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import SENSED, units
 from analytic.problem.errors import InputError, unknown

@@ -1,7 +1,9 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
+import hashlib
+import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,6 @@ from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.clamp_path import ClampWay, Direction, Pose, Poses, Sweep, TurningWay, along_x
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
-from analytic.problem.digest import digest_of
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import pair
 from analytic.problem.reach import (
@@ -37,6 +38,37 @@ from analytic.problem.support import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_PLACES = 67  # of a contour
+
+
+def digest_of(case: "Case") -> str:
+    """Equal for equal problems, whatever the case is called."""
+    xi, eta = case.centreline.place(np.linspace(*case.reach, _PLACES))
+    beam, foot_x = case.beam, case.foot_x
+    sizes = beam.length, beam.base_rigidity, beam.radius
+    if isinstance(case.sweep, Sweep):
+        ends = [foot_x[0], foot_x[-1], len(foot_x)]
+    else:
+        ends = [value for values in case.stations for value in values.tolist()]
+    numbers = np.array([*sizes, *ends, *xi, *eta])
+    if not case.is_plain:
+        base_curvature = float(beam.curvature_at(0.0))
+        beyond = base_curvature, case.clamp_stiffness, case.friction
+        numbers = np.append(numbers, beyond)
+    if case.clamp_angle or any(case.weight):
+        numbers = np.append(numbers, case.clamp_angle)
+    if any(case.weight):
+        numbers = np.append(numbers, case.weight)
+    for other in case.alone:
+        places = other.centreline.place(np.linspace(*other.reach, _PLACES))
+        numbers = np.append(numbers, places)
+    text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
+    if beam.varies:
+        given = asdict(beam)
+        names = "flexural_rigidity", "tip_radius", "natural_curvature"
+        text += json.dumps([given[name] for name in names])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True, repr=False)
@@ -180,24 +212,6 @@ class Case(AnyCase, Shown):
         along = self.running_values
         return -along / self.beam.length if self.sweep.running == "travel" else -along
 
-    def running_at(self, p: float) -> float:
-        """What the sweep runs over, at a parameter of the way to the left that solves it.
-
-        Parameters
-        ----------
-        p : float
-            The parameter.
-
-        Returns
-        -------
-        float
-            A foot position or a travel [length], or an angle of the clamp [rad].
-        """
-        if self.sweep.running == "travel":
-            return -p * self.beam.length
-        turned = p if self.direction == "left" else -p
-        return turned * self.beam.length if isinstance(self.sweep, Sweep) else -turned
-
     @cached_property
     def running_values(self) -> Floats:
         """Values of what the sweep runs over, shape (stations,)."""
@@ -240,50 +254,6 @@ class Case(AnyCase, Shown):
             return contact_range(self.centreline)
         highest = float(self.poses.at(self.way).foot_y.max())
         return contact_range(self.centreline.raised(-highest) if highest else self.centreline)
-
-    def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
-        """The same sweep between other positions of the foot.
-
-        Parameters
-        ----------
-        start, stop : float
-            [length].
-        stations : int, optional
-            As many as before if not given.
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-
-        Raises
-        ------
-        InputError
-            If the clamp turns or leaves its line on its way.
-        """
-        sweep = self.require_line("a sweep between other positions of the foot")
-        number = sweep.stations if stations is None else stations
-        return replace(self, sweep=replace(sweep, stations=number, start=start, stop=stop))
-
-    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Case":
-        """The case over its own stations, whatever else is changed of it then, or beside them.
-
-        Parameters
-        ----------
-        x : float
-            By how much the foot is farther right at each station [length].
-        angle : float
-            By how much the clamp leans more to the left there [rad].
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-        """
-        if not isinstance(self.sweep, Sweep):
-            return replace(self, sweep=self.sweep.shifted(x, angle))
-        start, stop = (float(foot) + x for foot in self.foot_x[[0, -1]])
-        return replace(self.between(start, stop), clamp_angle=self.clamp_angle + angle)
 
     @property
     def radius(self) -> float:

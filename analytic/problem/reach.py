@@ -154,6 +154,21 @@ def stop_of(case: "Case") -> float:
     return sign * (_MARGIN - out_of_reach(contour, *reach)) * case.beam.length
 
 
+def between(case: "Case", start: float, stop: float, stations: int | None = None) -> "Case":
+    """The same sweep between other positions of the foot [length]."""
+    sweep = case.require_line("a sweep between other positions of the foot")
+    number = sweep.stations if stations is None else stations
+    return replace(case, sweep=replace(sweep, stations=number, start=start, stop=stop))
+
+
+def shifted(case: "Case", x: float = 0.0, angle: float = 0.0) -> "Case":
+    """The case over its own stations, whatever else is changed of it then, or beside them."""
+    if not isinstance(case.sweep, Sweep):
+        return replace(case, sweep=case.sweep.shifted(x, angle))
+    start, stop = (float(foot) + x for foot in case.foot_x[[0, -1]])
+    return replace(between(case, start, stop), clamp_angle=case.clamp_angle + angle)
+
+
 def _leftward(case: "Case") -> tuple[Contour, tuple[float, float]]:
     """Contour and reach of the sweep to the left that this one is, or mirrors."""
     if case.direction == "left":

@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Sweep
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import require, unknown
 from analytic.problem.readings import Readings, are_finite, solved_readings
@@ -114,6 +115,14 @@ class AnyRecorder(ABC, Generic[Kept]):
         return columns
 
 
+def running_values(case: Case, events: Mapping[str, float | None]) -> dict[str, float | None]:
+    """What a case's sweep runs over, by parameters of the way to the left that solves it."""
+    size = case.beam.length if isinstance(case.sweep, Sweep) else -1.0
+    unit = size if case.direction == "left" else -size
+    unit = -case.beam.length if case.sweep.running == "travel" else unit
+    return {name: None if p is None else unit * p for name, p in events.items()}
+
+
 @dataclass
 class Recorder(AnyRecorder[Readings]):
     """Of a sweep in the plane to the left; its events are parameters of the way by name."""
@@ -130,10 +139,7 @@ class Recorder(AnyRecorder[Readings]):
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
         for name in WORDS:
             columns[name] = np.array([_number(name, word) for word in columns[name]])
-        events = {
-            name: None if p is None else self.case.running_at(p)
-            for name, p in self.events().items()
-        }
+        events = running_values(self.case, self.events())
         beam, provenance, finite = self.case.beam, self._provenance(events), are_finite(columns)
         return solved_readings(
             columns, beam, self.source, lambda: provenance, events["snap_off"], finite

@@ -23,6 +23,7 @@ from analytic.problem.columns import (
 )
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.readings import Readings, solved_readings
+from analytic.problem.recorder import running_values
 from analytic.solver.general.states import States, Vibrissa
 
 Numbers: TypeAlias = Floats | Integers
@@ -136,7 +137,7 @@ def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: boo
         from analytic.problem.table import mirrored_columns  # slow to load, and few sweeps need it
 
         columns = mirrored_columns(columns)
-    places = {n: None if x is None else case.running_at(x) for n, x in events.items()}
+    places = running_values(case, events)
     record = partial(_provenance, case, places)
     return solved_readings(columns, case.beam, "analytic", record, places["snap_off"], finite)
 

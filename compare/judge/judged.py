@@ -164,7 +164,6 @@ class Judged(SweepPair[Sweep]):
         return row
 
     def __repr__(self) -> str:
-        """The verdict, the events, and what failed."""
         return "\n".join(self.lines())
 
     def _tiles(self) -> dict[str, object]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from analytic.problem.errors import InputError, near
+from analytic.problem.errors import InputError, called, near
 from compare.read.toml import KeyPlace
 
 _LONGEST_NAME = 100
@@ -65,7 +65,7 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
             if isinstance(refused, InputError):
                 named = refused.name.split(".")
                 if named[: len(inside)] == inside:  # it says which of the table's keys
-                    return refused.called(place([*outer, *named]))
+                    return called(refused, place([*outer, *named]))
             return InputError(name, value, "usable", str(refused))
     allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
     for theirs, plain in _PLAIN.items():

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, called
 from analytic.problem.files import regular_file
 
 KeyPlace: TypeAlias = Callable[[Sequence[str]], str]
@@ -86,7 +86,7 @@ class TomlFile:
             if not isinstance(stated, dict):
                 raise
             unit = " in SI units" if _WITH_UNIT.match(str(stated.get(key))) else ""
-            raise error.called(self.place([table, key] if key else [table]) + unit) from error
+            raise called(error, self.place([table, key] if key else [table]) + unit) from error
 
     def _line(self, keys: Sequence[str]) -> int | None:
         """The line that states a key: the last one with its name before which there is none."""

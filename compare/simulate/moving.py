@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, Readings, solve_sweep
+from analytic.problem.reach import between, shifted
 from compare.explain.motion import (
     OPTIONAL,
     MotionBudget,
@@ -82,7 +83,7 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
         flexural_rigidity=by_its_clamp(found),
         natural_curvature=found.natural_curvature,
     )
-    return replace(case.shifted(), beam=beam)
+    return replace(shifted(case), beam=beam)
 
 
 def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
@@ -95,7 +96,7 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
         return simulate_sweep(case, settings)
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
-    found = simulate_sweep(case.between(first, last, (stations - 1) * _PARTS + 1), settings)
+    found = simulate_sweep(between(case, first, last, (stations - 1) * _PARTS + 1), settings)
     table = found.table.iloc[::_PARTS].reset_index(drop=True)
     places = np.arange(len(found.table))
     offsets = average * _PARTS * np.linspace(-0.5, 0.5, _PARTS + 1)

@@ -23,7 +23,7 @@ from analytic.from_clamp.reconstruct import Doubt, doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError, because, require
 from analytic.problem.readings import Readings
 from analytic.problem.shown import Shown
 from analytic.problem.support import support_record
@@ -213,7 +213,7 @@ def calibrate(
     except InputError as error:
         if (why := doubt_of_case(passes[0], case)) is None:
             raise
-        raise error.because(str(why)) from error
+        raise because(error, str(why)) from error
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass, known.alike) if len(passes) > 1 else None
 

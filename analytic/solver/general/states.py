@@ -25,8 +25,7 @@ from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.rod import AtRest, Hung, RodProperties, at_rest, hang
 from analytic.problem.support import Support
-from analytic.solver.general import march
-from analytic.solver.general.span import Start, back_to_clamp
+from analytic.solver.general.span import Start, back_by_collocation, back_to_clamp
 
 if TYPE_CHECKING:
     from analytic.solver.general.pair import InnerContact, Pair
@@ -172,7 +171,7 @@ class Vibrissa(NamedTuple):
     ) -> Start:
         if self.rod is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
-        return march.back_to_clamp(self.rod, slope, -couple, force, length, direction)
+        return back_by_collocation(self.rod, slope, -couple, force, length, direction)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
