@@ -22,7 +22,10 @@ _STORED = "a reference that is a file"
 def compare(
     context: typer.Context,
     reference: Annotated[
-        str, typer.Argument(help="A case, for its closed form, or a file of readings.")
+        str,
+        typer.Argument(
+            metavar="REFERENCE", help="A case, for its closed form, or a file of readings."
+        ),
     ],
     candidates: Annotated[
         list[Path],

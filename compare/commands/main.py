@@ -24,6 +24,7 @@ from compare.commands.rig import rig
 from compare.commands.run import run, view
 from compare.commands.study import report, study
 from compare.commands.verify import verify
+from compare.read.complaints import in_our_words
 
 _GONE = {
     "analytic": "vibrissa run CASE --engine exact",
@@ -156,9 +157,13 @@ def _in_words(error: Exception) -> str:
         case InputError():
             return str(error)
         case TyperException():
-            said = error.format_message().rstrip(".").replace("Value error, ", "")
+            said = in_our_words(error.format_message().rstrip("."))
             given, _, known = said.partition(" is not one of ")  # words in single quotes
             remedy = near(given.split("'")[-2], known.split("'")[1::2], "") if known else ""
+            if said.startswith("Missing argument"):
+                of: Any = getattr(error, "ctx", None)  # every error of an argument has one
+                words = [x.metavar for x in of.command.params if x.param_type_name == "argument"]
+                remedy = f"write vibrissa {of.info_name} {' '.join(words)}"
             return f"{said}; {remedy or 'see `vibrissa --help`'}"
         case OSError():
             place = "a file" if error.filename is None else error.filename

@@ -14,6 +14,7 @@ from compare.read.toml import KeyPlace
 _LONGEST_NAME = 100
 _OF_KINDS = ("profile", "body")  # tables that are of one of several kinds
 _PLAIN = {
+    "Input should be": "must be", "Value should be": "must be", "Value error, ": "",
     "valid tuple": "list", "valid list": "list", "valid dictionary": "table",
     "valid string": "text in quotes", "valid integer": "whole number",
     "a valid boolean": "true or false", "valid number": "number",
@@ -67,10 +68,15 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
                 if named[: len(inside)] == inside:  # it says which of the table's keys
                     return called(refused, place([*outer, *named]))
             return InputError(name, value, "usable", str(refused))
-    allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
-    for theirs, plain in _PLAIN.items():
-        allowed = allowed.replace(theirs, plain)
+    allowed = in_our_words(first["msg"]).removeprefix("must be ")
     return InputError(name, value, allowed, "change it")
+
+
+def in_our_words(said: str) -> str:
+    """What pydantic says, as everything else here does."""
+    for theirs, plain in _PLAIN.items():
+        said = said.replace(theirs, plain)
+    return said.partition(", unable to parse")[0]
 
 
 def require_known(given: object, allowed: Sequence[str]) -> None:

@@ -50,8 +50,8 @@ def parts_at_rest(case: Case, settings: Settings, engine: str = "MuJoCo") -> tup
 def require_no_friction(friction: float, engine: str = "MuJoCo") -> None:
     if friction != 0:
         allowed = f"0 for {engine} at rest"
-        remedy = "with friction many states are at rest, and the motion decides which: run it with "
-        remedy += "--motion (simulate_motion), or in closed form alone, --engine exact"
+        remedy = "with friction many states are at rest, and the motion decides which: give a case "
+        remedy += "file [motion] (simulate_motion), or run the closed form alone, --engine exact"
         raise InputError("friction", friction, allowed, remedy)
 
 
