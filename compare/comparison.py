@@ -111,6 +111,7 @@ class Comparison(Judged[Readings], Measurement):
         Comparison
             With its `validation`.
         """
+        require("stated", stated, Uncertainties, "as Uncertainties({'length': Input(1e-3)})")
         if self.offset.uncertainty > 0:
             fitted = Input(self.offset.uncertainty / _OF_95)
             stated = replace(stated, inputs={**stated.inputs, "foot_x": fitted})

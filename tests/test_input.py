@@ -32,12 +32,15 @@ from analytic import (
 from analytic.space import reconstruct_space, solve_space
 from compare import classify, compare, read_measured, separate_lag, validate, write_report
 from mujoco_models import (
+    OwnModel,
     Settings,
     inspect_model,
     simulate_model,
     simulate_motion,
     simulate_sweep,
 )
+
+EXACT = solve_sweep(Case())
 
 
 @pytest.mark.parametrize(
@@ -72,6 +75,9 @@ from mujoco_models import (
         (lambda: simulate_model(Case(), "a.xml"), "as OwnModel('my_whisker.xml')"),
         (lambda: simulate_motion(Case(), Settings()), "motion = a Settings"),
         (lambda: inspect_model("sound-chian"), "did you mean sound-chain?"),
+        (lambda: OwnModel("sound-chain", contact="our"), "did you mean ours?"),
+        (lambda: OwnModel("sound-chain", damping=-1), "model.damping = -1"),
+        (lambda: compare(EXACT, EXACT).validated(Case(), {"length": 1}), "stated = a dict"),
         (lambda: inspect_model(3), "model = a int"),
         (lambda: certify(Case()), "readings = a Case"),
         (lambda: classify(Case()), "readings = a Case"),
@@ -104,8 +110,8 @@ def test_values(make, said):
         (analytic, "solve_swep", "analytic has no 'solve_swep'; did you mean solve_sweep?"),
         (compare_package, "measure_budgt", "did you mean measure_budget?"),
         (mujoco_models, "zzz", "dir(mujoco_models) lists what it has"),
-        (solve_sweep(Case()), "force_x", "take table['force_x']"),
-        (solve_sweep(Case()), "plt", "did you mean plot?"),
+        (EXACT, "force_x", "take table['force_x']"),
+        (EXACT, "plt", "did you mean plot?"),
     ],
 )
 def test_names_that_are_nearly_right(of, name, said):

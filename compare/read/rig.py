@@ -168,7 +168,7 @@ def renamed(
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}
     own: dict[str, str] = {}
-    for text in columns:
+    for text in [columns] if isinstance(columns, str) else columns:
         name, _, rest = text.partition("=")
         # Names of columns may have colons, units never do.
         column, unit = (rest, "") if rest in table else rest.rpartition(":")[::2]

@@ -117,6 +117,11 @@ class Validation:
     left_out: dict[str, int]
     table: pd.DataFrame = field(compare=False)
 
+    def __repr__(self) -> str:
+        found = "resolved" if self.resolved else "not resolved"
+        whole = f"E {self.whole.error:.2g}, k u_val {self.whole.limit:.2g}"
+        return f"Validation({found}: {whole}, most by {self.dominant})"
+
     @property
     def resolved(self) -> bool:
         """Whether the disagreement of all readings is larger than its uncertainty."""

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
+from analytic.problem.numbers import within
+from mujoco_models.allowed import check_word
 from mujoco_models.user_model.shipped import find_model
 
 ContactKind: TypeAlias = Literal["own", "ours"]
@@ -44,3 +46,7 @@ class OwnModel:
     def __post_init__(self) -> None:
         """A name will do for a file."""
         object.__setattr__(self, "file", find_model(self.file))
+        check_word("model.contact", self.contact, get_args(ContactKind))
+        check_word("model.solver", self.solver, ("own", "newton"))
+        for name in ("timestep", "damping", "stiffness"):
+            within(f"model.{name}", getattr(self, name), 0.0)

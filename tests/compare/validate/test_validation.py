@@ -41,6 +41,7 @@ def test_an_error_of_the_model_is_resolved():
     found = validated(case, {"friction": 0.05}, stated, samples=8)
     assert found.resolved
     assert found.shrink == 1.0
+    assert repr(found).startswith("Validation(resolved: E ")
     assert found.whole.error > 3 * found.whole.limit
 
 
