@@ -30,7 +30,16 @@ from analytic import (
     solve_sweep,
 )
 from analytic.space import reconstruct_space, solve_space
-from compare import classify, compare, read_measured, separate_lag, validate, write_report
+from compare import (
+    Input,
+    Uncertainties,
+    classify,
+    compare,
+    read_measured,
+    separate_lag,
+    validate,
+    write_report,
+)
 from mujoco_models import (
     OwnModel,
     Settings,
@@ -88,6 +97,11 @@ EXACT = solve_sweep(Case())
         (lambda: write_report(1, 2), "folder = a int: must be a path"),
         (lambda: write_report("nowhere"), "DIR = nowhere"),
         (lambda: validate(1, 2, 3), "found = a int"),
+        (
+            lambda: validate(compare(EXACT, EXACT), Case(), Uncertainties(), simulation="data"),
+            "simulation = 'data': must be one of reference, candidate",
+        ),
+        (lambda: Input(1e-3, "unifrom"), "did you mean uniform?"),
         (
             lambda: simulate_sweep(Case(beam=Beam(radius=0.0), profile=circle(1, (0, 0.4)))),
             "beam.radius = 0",

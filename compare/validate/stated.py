@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -61,6 +61,8 @@ class Input:
 
     def __post_init__(self) -> None:
         within("standard uncertainty", self.standard, 0.0, remedy="check the units")
+        if self.distribution not in get_args(Distribution):
+            raise unknown("distribution", self.distribution, get_args(Distribution))
 
     @classmethod
     def within(cls, half_width: float) -> "Input":

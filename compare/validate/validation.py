@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import Any, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,7 @@ from pydantic import ConfigDict
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import require
+from analytic.problem.errors import require, unknown
 from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
@@ -206,6 +206,8 @@ def validate(
         If no compared station has a sensitivity, or the case cannot be solved with its inputs off.
     """
     require("found", found, Measurement, "as compare(reference, candidate)")
+    if simulation not in get_args(Side):
+        raise unknown("simulation", simulation, get_args(Side))
     case.require_sweep("a validation")
     reach = sensitivities(case, stated, samples)
     whole_table = found.alignment.table
@@ -215,8 +217,8 @@ def validate(
     place = float(np.sqrt(reach.snap_off @ stated.correlation @ reach.snap_off))
     widened = window + _SNAP * place / sweep
     near = before_snap_off(found.reference, here.foot_x, found.snap_off, widened)
-    unknown = np.isnan(here.readings).any(axis=(0, 1)) & ~near
-    kept = ~near & ~unknown
+    blind = np.isnan(here.readings).any(axis=(0, 1)) & ~near
+    kept = ~near & ~blind
     if not kept.any():
         what = f"none of {len(table)} compared"
         allowed = "some away from the snap-off whose sensitivity is known"
@@ -258,7 +260,7 @@ def validate(
         rows,
         {
             "before_snap_off": int(near.sum()),
-            "without_sensitivity": int(unknown.sum()),
+            "without_sensitivity": int(blind.sum()),
             "thinned": len(whole_table) - len(near),
         },
         _table(table, error, spread),
