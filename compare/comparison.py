@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 
 from analytic import PHASES, Case, InputError, Readings
 from analytic.problem.errors import require
 from analytic.space import SpatialReadings
+from compare.align.frames import Frame
 from compare.align.stations import check_same_stations
 from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
@@ -36,9 +37,6 @@ from compare.sense.occurrence import Occurrence
 from compare.sense.touching import component_levels, component_scales
 from compare.validate.stated import Input, Uncertainties
 from compare.validate.validation import Side, Validation, validate
-
-if TYPE_CHECKING:
-    from compare.align.frames import Frame
 
 _EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
 _KEPT = ("rms", "max", "at", "phase", "rms_by_phase", "scale")  # of a disagreement in space

@@ -93,7 +93,7 @@ class Readings(OfVibrissa, SweepTable):
                 remedy = near(name, known, "its columns are in table")
                 remedy = f"take table[{name!r}]" if name in SCHEMA else remedy
                 raise AttributeError(f"{type(self).__name__} has no {name!r}; {remedy}")
-            return made[name]
+            return object.__getattribute__(self, name)
 
     def __getstate__(self) -> dict[str, Any]:
         """What copies and pickles have: of readings with a table still to be made, that table."""

@@ -21,8 +21,6 @@ ROUNDING = 1e-7
 
 @dataclass(frozen=True)
 class Split:
-    """What of a subject's disagreement is its implementation."""
-
     subject: str  # names of the engines
     twin: str
     # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.

@@ -85,6 +85,12 @@ class Judged(SweepPair[Sweep]):
         """What leads the verdict: of the failures of most weight that of the largest excess."""
         return max(self.exceeded, key=lambda one: (one.weight, one.excess), default=None)
 
+    def __bool__(self) -> bool:
+        # Any object is true: `assert compare(...)` held whatever was found.
+        raise TypeError(
+            "a comparison is neither true nor false: take `.agrees`, or assert_agreement"
+        )
+
     @property
     def agrees(self) -> bool:
         """Whether no limit is exceeded."""
@@ -158,7 +164,6 @@ class Judged(SweepPair[Sweep]):
         return row
 
     def __repr__(self) -> str:
-        """The verdict, the events, and what failed."""
         return "\n".join(self.lines())
 
     def _tiles(self) -> dict[str, object]:

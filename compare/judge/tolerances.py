@@ -41,7 +41,6 @@ class Limit(float):
     reason: str
 
     def __new__(cls, value: float, reason: str = "asked for by the caller") -> "Limit":
-        """A float with its reason."""
         limit = super().__new__(cls, value)
         limit.reason = reason
         return limit

@@ -56,7 +56,6 @@ def measure_in_space(
     stated: Mapping[str, float],
     frame: Frame = "world",
 ) -> SpatialMeasurement:
-    """Measure how far a candidate is off at the same stations, by the noise that is stated."""
     on, travel = touching(reference, candidate, stated), reference.running_values
     compared = on.reference & on.candidate
     phases = _phases(reference), _phases(candidate)

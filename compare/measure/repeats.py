@@ -28,8 +28,6 @@ _STEEP = 0.03  # ... of the largest magnitude: passes of which some have let go
 
 @dataclass(frozen=True)
 class Repeats:
-    """How far passes are from their mean."""
-
     names: tuple[str, ...]  # of the passes
     mean: Readings  # over stretches of the foot's travel in which half of the passes have rows
     # Shape (passes, 3); root mean squares over the largest magnitudes: drift that is left,
@@ -163,12 +161,9 @@ def _means(
     means = [table.groupby(x).mean() for table, x in zip(tables, stretches, strict=True)]
     shared = sorted(set.intersection(*(set(one.index) for one in means)))
     if len(shared) < _FEWEST:
-        raise InputError(
-            "passes",
-            f"{len(shared)} stretches of the foot's travel in which all have rows",
-            f"{_FEWEST} or more",
-            "take passes over the same travel together",
-        )
+        what = f"{len(shared)} stretches of the foot's travel in which all have rows"
+        remedy = "take passes over the same travel together"
+        raise InputError("passes", what, f"{_FEWEST} or more", remedy)
     if tables[0]["foot_x"].iloc[0] > tables[0]["foot_x"].iloc[-1]:
         shared = shared[::-1]
     return means, pd.Index(shared)

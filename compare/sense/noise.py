@@ -97,12 +97,8 @@ def shown_noise(readings: Readings) -> Noise:
 def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:
     """The same relative noise for all readings."""
     if isinstance(level, bool | str) or not 0 <= level < 1:
-        raise InputError(
-            "noise",
-            level,
-            "'auto', or between 0 and 1",
-            "it is relative to each reading's largest magnitude",
-        )
+        remedy = "it is relative to each reading's largest magnitude"
+        raise InputError("noise", level, "'auto', or between 0 and 1", remedy)
     return dict.fromkeys(names, float(level))
 
 

@@ -23,7 +23,6 @@ _CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
-    """What a terminal shows: what was found, and how far it is to be trusted."""
     passes, si = calibration.passes, calibration.case.beam.si
     if calibration.misfit_shows:
         yield Text(
@@ -66,7 +65,6 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
 
 
 def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
-    """What a terminal shows: the parameters, and how far they are to be trusted."""
     unit = "m" if si else ""
     rows = [
         (*_interval(name, one), "" if name.startswith(("exponent", "log", "axis")) else unit)
@@ -100,7 +98,6 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
 
 
 def band_summary(found: ConvexBand, beam: Beam) -> Iterator[Block]:
-    """What a terminal shows: how much of the body is known, and how well."""
     inner, outer, cube = volume(found.inner), volume(found.outer), beam.length**3
     yield Text(
         f"{found.stations} contacts hold a convex body of {inner / cube:.3g} L^3 or more, and of "

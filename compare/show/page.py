@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from datetime import datetime
 from functools import cache
@@ -66,33 +66,26 @@ def _template() -> "Template":
         svg=inline_svg,
         embedded=embedded,
         turning=turning,
-        code=_code,
+        # Words between back quotes are code.
+        code=lambda text: Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text)))),
     )
     return environment.get_template("document.html.j2")
-
-
-def _code(text: object) -> Markup:
-    """Text whose words between back quotes are code."""
-    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def colophon() -> dict[str, str]:
     """What is known of the process that makes a page."""
     program, *words = sys.argv
+    versions = [f"Python {platform.python_version()}"]
+    for package, name in _PACKAGES.items():
+        with suppress(PackageNotFoundError):
+            versions.append(f"{name} {version(package)}")
     found = {
         "command": "" if program in ("", "-c") else shlex.join([Path(program).name, *words]),
         "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z"),
-        "versions": ", ".join(_versions()),
+        "versions": ", ".join(versions),
         "commit": _commit(),
     }
     return {name: value for name, value in found.items() if value}
-
-
-def _versions() -> Iterator[str]:
-    yield f"Python {platform.python_version()}"
-    for package, name in _PACKAGES.items():
-        with suppress(PackageNotFoundError):
-            yield f"{name} {version(package)}"
 
 
 def _commit() -> str:

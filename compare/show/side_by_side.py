@@ -25,8 +25,6 @@ _EDGE = 0.97  # of the picture's width
 
 @dataclass(frozen=True)
 class SideBySide:
-    """Sweeps compared with a reference and with each other."""
-
     case: str  # what was swept
     outcomes: Sequence[EngineOutcome]  # in the order in which they were asked for
     against: dict[str, Comparison]  # each sweep against the reference, by its name
@@ -116,7 +114,6 @@ def _causes(found: Comparison) -> Iterator[str]:
 
 
 def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Path]:
-    """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
     drawn = error_against_time(found) if _timed(found) else differences(found)
     contents: dict[str, Content] = {".html": document, ".json": found.to_dict(), ".png": drawn}

@@ -38,15 +38,12 @@ _WAY = 1.5  # L; of the foot while the side of the vibrissa touches that circle
 
 @dataclass(frozen=True)
 class Fixed:
-    """What was written, and what it is."""
-
     files: tuple[Path, ...]
     edits: tuple[Edit | Insert, ...]
     followed: tuple[Edit | Insert, ...]  # those of them that the model asks for with the others set
     inspection: Inspection  # of the fixed model
 
     def lines(self) -> Iterator[str]:
-        """What was done, and what to expect."""
         names = " and ".join(str(file) for file in self.files)
         yield f"wrote {names}: {len(self.edits)} edits"
         for edit in filter(str, self.followed):

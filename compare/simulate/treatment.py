@@ -193,7 +193,6 @@ def straightened(sensor: Sensed) -> tuple[Edit, ...]:
 
 
 def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
-    """A sensor's site where the vibrissa begins."""
     return (Edit("site", (("pos", _place(sensor.clamp, length)),), (sensor.site,)),)
 
 

@@ -99,12 +99,9 @@ def sensitivities(case: Case, stated: Uncertainties, samples: int) -> Sensitivit
         changed.append(one.readings - nominal.readings)
         drawn.append([*errors.values()])
     if len(draws) - len(drawn) > _MOST_FAILED * len(draws):
-        raise InputError(
-            "[uncertainty]",
-            f"so large that {len(draws) - len(drawn)} of {len(draws)} cases cannot be solved",
-            "of cases that can",
-            f"state less, or check the units ({failure})",
-        )
+        what = f"so large that {len(draws) - len(drawn)} of {len(draws)} cases cannot be solved"
+        remedy = f"state less, or check the units ({failure})"
+        raise InputError("[uncertainty]", what, "of cases that can", remedy)
     drawn_ = np.array(drawn).reshape(len(drawn), len(slopes))
     standard = stated.standard
     return Sensitivities(

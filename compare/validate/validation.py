@@ -213,12 +213,10 @@ def validate(
     unknown = np.isnan(here.readings).any(axis=(0, 1)) & ~near
     kept = ~near & ~unknown
     if not kept.any():
-        raise InputError(
-            "stations of the validation",
-            f"none of {len(table)} compared",
-            "some away from the snap-off whose sensitivity is known",
-            "state smaller uncertainties, or add stations",
-        )
+        what = f"none of {len(table)} compared"
+        allowed = "some away from the snap-off whose sensitivity is known"
+        remedy = "state smaller uncertainties, or add stations"
+        raise InputError("stations of the validation", what, allowed, remedy)
     table = table[kept].reset_index(drop=True)
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     error = _values(table, "reference") - _values(table, "candidate")
@@ -318,12 +316,8 @@ def _spread(
     stacked = np.concatenate([part.reshape(len(part), differences) for part in modes])
     largest = max(float(np.abs(stacked).max(initial=0.0)), float(level.max()))
     if not largest < _LARGEST:
-        raise InputError(
-            "[uncertainty]",
-            f"{largest:.3g} of a reading's largest magnitude",
-            f"less than {_LARGEST:g}",
-            "check the units",
-        )
+        what, remedy = f"{largest:.3g} of a reading's largest magnitude", "check the units"
+        raise InputError("[uncertainty]", what, f"less than {_LARGEST:g}", remedy)
     correlation = np.eye(len(stacked))
     correlation[:inputs, :inputs] = stated.correlation
     names = (*stated.inputs, *[NUMERICS] * len(numerics), *[SECOND_ORDER] * len(second))
