@@ -36,33 +36,17 @@ _STEP = 1e-5  # of a number, for a derivative
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FittedObject(Fitted):
-    """An object of a family, as sweeps past it show it.
+    """An object of a family, as sweeps past it show it, with what each `Fitted` has.
 
     Parameters
     ----------
-    family : str
-        Of `FAMILIES`.
-    found : dict
-        `Estimate` by parameter: lengths in the unit of the readings, else none.
     case : Case
         The vibrissa of the readings, past this object.
     band : dict of array, shape (n,)
         The contour over the slope angles that are touched: ``slope_angle`` [rad], ``x``, ``y``, and
         ``half_width`` along the normal [length], within which the true one is in 95 % of all cases.
-    misfit : float
-        Root mean square of what the fit leaves, over the noise.
-    explains : bool
-        Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
-    stations : int
-        How many the fit is from.
-    noise : NoiseFound
-        What of the noise remembers.
     passes : Consistency or None
         Of several passes, whether each alone says the same.
-    rivals : dict
-        `bic` and `explains` of each family that was tried.
     """
 
     case: Case
