@@ -217,7 +217,12 @@ class Tolerances(Limits):
         bounces = 2 / stations + rate.speed / travel
         transition = self.transition + adds
         unclear = 4 * transition / travel
+        mean = min(max(rate.average, 0.0), 1.0) / (stations - 1)
         return {
+            "snap_off_window": Limit(
+                max(self.snap_off_window, mean),
+                f"{reasons['snap_off_window']}; a station is a mean over {mean:.1%} of the sweep",
+            ),
             "rms": Limit(rms, f"{self.rms:.1e} at rest ({reasons['rms']}), {what}{most}"),
             "max": Limit(max(self.max, _PEAK * rms), "ten times the rms, as at rest"),
             "transition": Limit(
