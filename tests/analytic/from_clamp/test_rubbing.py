@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 
 from analytic import (
     Beam,
@@ -148,12 +147,7 @@ def test_readings_say_what_rubs():
 
 def remembering(readings, level, seed):
     """With AR(0.9) noise that nobody states."""
-    rng = np.random.default_rng(seed)
-    white = rng.standard_normal((3, len(readings.table))) * np.sqrt(1 - 0.9**2)
-    noise = relative_noise(readings, level)
-    made = zip(noise.items(), lfilter([1.0], [1.0, -0.9], white), strict=True)
-    table = readings.table.assign(**{n: readings.values(n) + size * x for (n, size), x in made})
-    return Readings(table, readings.beam)
+    return noisy(readings, relative_noise(readings, level), seed, memory=0.9)
 
 
 @pytest.mark.parametrize("seed", range(5))
