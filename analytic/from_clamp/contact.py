@@ -23,10 +23,8 @@ from analytic.solver.general.states import Vibrissa
 
 Reconstruct = Callable[[Readings, "Mapping[str, float] | None"], pd.DataFrame]
 
-UNLOADED = 1e-9
-"""Force that has no direction to speak of, over EI/L^2."""
-LONGEST = 1.1
-"""Longest arc length of a contact, over L; one at the tip may seem so through noise."""
+UNLOADED = 1e-9  # force that has no direction to speak of, over EI/L^2
+LONGEST = 1.1  # longest arc length of a contact, over L; one at the tip may seem so through noise
 
 
 def reconstruct_turning(

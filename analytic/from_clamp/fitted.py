@@ -16,7 +16,27 @@ Kind = TypeVar("Kind", bound="Fitted")
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Fitted(Shown):
-    """An object of a family: `FittedObject` in the plane, `FittedBody` in space."""
+    """An object of a family: `FittedObject` in the plane, `FittedBody` in space.
+
+    Parameters
+    ----------
+    family : str
+        As it was asked for, or the likeliest.
+    found : dict
+        `Estimate` by parameter, in the unit of the readings.
+    misfit : float
+        Root mean square of what the fit leaves, over the noise.
+    explains : bool
+        Whether noise alone explains that.
+    bic : float
+        Schwarz's criterion: the least of several families is the likeliest.
+    stations : int
+        How many the fit is from.
+    noise : NoiseFound
+        What of the noise remembers.
+    rivals : dict
+        `bic` and `explains` of each family that was tried.
+    """
 
     family: str
     found: dict[str, Estimate]

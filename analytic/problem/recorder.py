@@ -23,8 +23,7 @@ from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import require, unknown
 from analytic.problem.readings import Readings, are_finite, solved_readings
 
-DIVERGED = {"phase": "free", "status": "diverged"}
-"""The row of a station without numbers."""
+DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
 Kept = TypeVar("Kept")
 
 

@@ -54,11 +54,9 @@ class Support(NamedTuple):
         return at_rest(rod, beam.moment_unit / self.clamp_stiffness)
 
 
-UPRIGHT = Support()
-"""The paper's clamp, no friction and no weight."""
+UPRIGHT = Support()  # the paper's clamp, no friction and no weight
 _WEIGHT = ("weight_x", "weight_y")
-RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}
-"""Names of what provenance says of all that."""
+RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}  # names of what provenance says of all that
 
 
 def check_support(held: Support, beam: Beam, signed: bool = False) -> None:

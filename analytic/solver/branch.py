@@ -81,8 +81,7 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
     ]
 
 
-_Part: TypeAlias = tuple[Floats, Samples]
-"""Contour parameters and states along a branch."""
+_Part: TypeAlias = tuple[Floats, Samples]  # contour parameters and states along a branch
 
 
 def _to_snap_off(t: Floats, samples: Samples) -> _Part:

@@ -146,8 +146,7 @@ class Tolerances(Limits):
     """
 
     rms: float = Limit(
-        2e-3,
-        "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less",
+        2e-3, "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less"
     )
     max: float = Limit(
         2e-2,

@@ -18,8 +18,7 @@ _LONGEST_LAG = 0.1  # L
 
 LAG = "lag"
 OFFSET = "offset"
-OF_THE_FOOT = (OFFSET, LAG)
-"""Unknowns that are none of the case but of its foot position."""
+OF_THE_FOOT = (OFFSET, LAG)  # unknowns that are none of the case but of its foot position
 
 
 @dataclass(frozen=True)

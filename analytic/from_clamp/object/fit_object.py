@@ -36,33 +36,17 @@ _STEP = 1e-5  # of a number, for a derivative
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FittedObject(Fitted):
-    """An object of a family, as sweeps past it show it.
+    """An object of a family, as sweeps past it show it, with what each `Fitted` has.
 
     Parameters
     ----------
-    family : str
-        Of `FAMILIES`.
-    found : dict
-        `Estimate` by parameter: lengths in the unit of the readings, else none.
     case : Case
         The vibrissa of the readings, past this object.
     band : dict of array, shape (n,)
         The contour over the slope angles that are touched: ``slope_angle`` [rad], ``x``, ``y``, and
         ``half_width`` along the normal [length], within which the true one is in 95 % of all cases.
-    misfit : float
-        Root mean square of what the fit leaves, over the noise.
-    explains : bool
-        Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
-    stations : int
-        How many the fit is from.
-    noise : NoiseFound
-        What of the noise remembers.
     passes : Consistency or None
         Of several passes, whether each alone says the same.
-    rivals : dict
-        `bic` and `explains` of each family that was tried.
     """
 
     case: Case
@@ -84,6 +68,7 @@ def fit_object(
     readings: Readings | Sequence[Readings],
     family: str = "circle",
     noise: Mapping[str, float] | None = None,
+    beside: Sequence[str] = (),
 ) -> FittedObject:
     """The object of a family whose closed form explains the clamp's readings best.
 
@@ -104,6 +89,9 @@ def fit_object(
     noise : mapping, optional
         Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
         it is what the readings themselves show.
+    beside : sequence of str, optional
+        What is unknown of the vibrissa, too, as ``"friction"``, by the names of `calibrate`. An
+        estimate that the readings are given with is taken for exact otherwise.
 
     Returns
     -------
@@ -119,7 +107,7 @@ def fit_object(
     """
     check_family(family, FAMILIES)
     passes = as_passes(readings)
-    fit = families_fitted(passes, noise, late_if_both_ways(passes))
+    fit = families_fitted(passes, noise, (*beside, *late_if_both_ways(passes)))
     return likeliest(
         family,
         FAMILIES,

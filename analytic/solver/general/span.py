@@ -239,7 +239,9 @@ def _step(panel: Panel, here: SpanEnd, pull: _Pull, trail: list[Trail] | None) -
     force = pull.force
     # By the natural curvature and the moment at the beginning; the force turns it further.
     reached = turned = here.theta + (panel.rest + panel.bend * here.m)
-    for _ in range(_iterations(float(panel.give.max() * pull.largest.max())) + 1):
+    # By a square phase of pull the k-th iteration leaves pull^(k + 1)/(2 k + 2)!.
+    square = float(panel.give.max() * pull.largest.max())
+    for _ in range(int(np.searchsorted(_PULLS, square)) + 1):
         theta = reached[:-1]
         cos = np.cos(theta)
         if pull.heavy:
@@ -277,8 +279,3 @@ def _phases(panel: Panel, theta: Floats, m: Floats, force: Floats) -> Floats:
     curvature = panel.natural + m * panel.flexible
     p = np.sqrt(force) * np.sin(np.pi / 4 - theta / 2)
     return np.asarray(np.arctan2(p, curvature / (-2 * np.sqrt(panel.flexible))))
-
-
-def _iterations(pull: float) -> int:
-    """How many leave nothing, by a square phase: the k-th leaves pull^(k + 1)/(2 k + 2)!."""
-    return int(np.searchsorted(_PULLS, pull))

@@ -36,10 +36,8 @@ _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
 _ASIDE = 1e-5  # rad; to both sides, by which a heavy vibrissa is turned with its contact
 _BOTH_SIDES = np.array([[1.0], [-1.0]])
-FORCES = slice(1, -1, 3)
-"""The places of the forces among the numbers of a state on a way."""
-INSIDE = -5e-324
-"""An excess of nothing, in Phase B."""
+FORCES = slice(1, -1, 3)  # the places of the forces among the numbers of a state on a way
+INSIDE = -5e-324  # an excess of nothing, in Phase B
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
 
 

@@ -46,29 +46,14 @@ _KNOWN_TO = 0.5  # L; a length that is known to less is not determined
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FittedBody(Fitted):
-    """A body of a family, as sweeps past it show it.
+    """A body of a family, as sweeps past it show it, with what each `Fitted` has.
+
+    What is found of an axis are the components of its unit vector.
 
     Parameters
     ----------
-    family : str
-        ``"sphere"``, ``"ellipsoid"`` or ``"cylinder"``.
-    found : dict
-        `Estimate` by parameter: lengths in the unit of the readings; of an axis the components of
-        its unit vector.
     body : Body
         The body.
-    misfit : float
-        Root mean square of what the fit leaves, over the noise.
-    explains : bool
-        Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
-    stations : int
-        How many the fit is from.
-    noise : NoiseFound
-        What of the noise remembers.
-    rivals : dict
-        `bic` and `explains` of each family that was tried.
     """
 
     body: Body

@@ -25,8 +25,7 @@ SENSED_IN_SPACE = (*FOOT, *FORCE, *MOMENT)
 """What the clamp of a sweep in space knows: where it is, force and moment."""
 CONTACT_POINT = ("contact_x", "contact_y", "contact_z")
 NORMAL = ("normal_x", "normal_y", "normal_z")
-FRICTION = ("friction_x", "friction_y", "friction_z")
-"""Over the normal force, on the vibrissa."""
+FRICTION = ("friction_x", "friction_y", "friction_z")  # over the normal force, on the vibrissa
 PHASES_IN_SPACE = ("free", "tip", "tangent")
 STATUSES_IN_SPACE = (
     "ok",

@@ -93,10 +93,8 @@ class Scene(NamedTuple):
     """What does not change along a sweep; lengths in L."""
 
     body: Body
-    tangent: Floats
-    """Of the clamp."""
-    radius: float
-    """Of the vibrissa."""
+    tangent: Floats  # of the clamp
+    radius: float  # of the vibrissa
 
 
 class Contact(NamedTuple):
@@ -105,14 +103,10 @@ class Contact(NamedTuple):
     spot: Spot
     plane: Plane
     loaded: Loaded
-    rotation: float
-    """Rotation w of the end of the loaded part [rad]."""
-    arc_length: float
-    """Of the loaded part."""
-    tangent: bool
-    """Phase B."""
-    centre: Floats
-    """Of the vibrissa's axis at the contact, shape (3,)."""
+    rotation: float  # rotation w of the end of the loaded part [rad]
+    arc_length: float  # of the loaded part
+    tangent: bool  # Phase B
+    centre: Floats  # of the vibrissa's axis at the contact, shape (3,)
 
     @property
     def on_parallel(self) -> Floats:

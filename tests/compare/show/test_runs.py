@@ -95,7 +95,6 @@ def engines_left(folder, implementation=1e-9):
     slow = EngineOutcome("slow", "twin", "1.0", trouble="not finished after 20 s")
     never = EngineOutcome("never", rms=dict.fromkeys(CLAMP_READINGS, math.nan))
     content = {"case": "catenary", "engines": [*swept, slow, never], "split": split}
-    folder.mkdir(parents=True)
     write_all(folder, {"engines.json": content})
 
 
