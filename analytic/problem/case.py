@@ -357,7 +357,7 @@ class Case(AnyCase, Shown):
     def _tiles(self) -> dict[str, object]:
         return {
             "case": self.name,
-            "object": self.profile.label,
+            "object": " and ".join(one.label for one in (self.profile, *self.others)),
             "beam": described(self.beam),
             **{name: f"{value:g}" for name, value in self.beyond_the_paper.items()},
             "stations": ways(self),

@@ -9,8 +9,10 @@ from matplotlib.figure import Figure
 
 from analytic import (
     CLAMP_READINGS,
+    Case,
     Readings,
     calibrate,
+    circle,
     find_events,
     named_case,
     solve_sweep,
@@ -41,6 +43,11 @@ def test_a_line_or_a_screen_and_tiles_with_a_picture():
         assert page.startswith("<div")
         assert "data:image/png;base64," in page
         assert len(page) < 150_000
+
+
+def test_a_case_shows_all_its_objects():
+    both = Case(profile=[circle(0.2, (0.3, 0.5)), circle(0.1, (-0.5, 0.6))])
+    assert "circle of radius 0.2" in repr(both) and "circle of radius 0.1" in repr(both)
 
 
 def test_what_is_drawn_is_in_the_units_of_the_case():
