@@ -24,12 +24,7 @@ from compare.judge.allowance import (
 )
 from compare.judge.failures import Failure, failures, failures_in_space
 from compare.judge.judged import Judged, Number
-from compare.judge.tolerances import (
-    SpatialTolerances,
-    Tolerances,
-    checked_limits,
-    in_segments,
-)
+from compare.judge.tolerances import SpatialTolerances, Tolerances, checked_limits, in_segments
 from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import Noise, checked_level, noise_level

@@ -93,12 +93,7 @@ class Twin(Balance):
     """See `mujoco_models.model.balance.Balance`."""
 
     def __init__(
-        self,
-        make: Maker,
-        beam: Beam,
-        radius: float,
-        obstacle: Obstacle,
-        contact_stiffness: float,
+        self, make: Maker, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float
     ) -> None:
         self.layout, self.obstacle, self._beam, self.radius = beam.layout, obstacle, beam, radius
         self.contact_stiffness, self.evaluations = contact_stiffness, 0

@@ -9,13 +9,16 @@ from analytic.from_clamp.contact import SweptVibrissa, dimensionless
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import (
     DOUBLE_SIDED_95,
+    MEDIAN_OF_NORMAL,
+    SIGMAS,
     checked_noise,
     largest,
     reading_noise,
     zero_uncertainty,
 )
-from analytic.from_clamp.phases import judge_phases
+from analytic.from_clamp.phases import Judgement, judge_phases
 from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, require_readings
@@ -103,7 +106,8 @@ def estimate_friction(
         judged = judge_phases(assumed, noise)
         tangent = judged.phase == "tangent"
         if number == 0:
-            tangent = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
+            size = _shown(judged, readings.beam) if noise is None else judged.shortfall_tolerance
+            tangent = judged.shortfall > _CLEARLY * size
         tangent &= readings.trusted
         found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
     if found.coefficient < -_BELOW * found.uncertainty:
@@ -111,6 +115,20 @@ def estimate_friction(
         remedy = "state the noise, of which what remembers hardly jumps; check signs and vibrissa"
         raise InputError("friction that was found", what, "0 or more", remedy)
     return found
+
+
+def _shown(judged: Judgement, beam: Beam) -> Floats:
+    """Standard deviation of each shortfall, by what lies beyond the tip if that is more.
+
+    Noise that remembers is more than its jumps say. A friction that is not known moves a contact,
+    too, by less than the radius: that is none.
+    """
+    below, stated = judged.shortfall < 0, judged.shortfall_tolerance
+    if not below.any():
+        return stated
+    moved = np.hypot(stated, beam.radius / beam.length)
+    shown = np.median(-judged.shortfall[below] / moved[below]) / MEDIAN_OF_NORMAL
+    return np.asarray(max(1.0, float(shown)) * stated)
 
 
 def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> FrictionFound:
@@ -125,6 +143,10 @@ def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> 
         raise InputError("stations of Phase B", len(sine), f"{_FEWEST} or more", remedy)
     by_reading = np.nan_to_num((moved - sine) / _STEP)
     deviation = np.sqrt(_beside((by_reading**2).sum(axis=0)))
+    # Next to no load noise that hardly jumps is taken for a contact, and says anything.
+    off = np.abs(sine - np.median(sine)) / deviation
+    near = off <= SIGMAS * max(1.0, float(np.median(off)) / MEDIAN_OF_NORMAL)
+    sine, deviation, by_reading = sine[near], deviation[near], by_reading[:, near]
     known = estimate(
         (sine / deviation)[:, None],
         (1 / deviation)[:, None, None],

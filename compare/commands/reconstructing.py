@@ -104,7 +104,8 @@ def in_the_plane(
     fitted = none = None
     with waiting("fitting"):
         try:
-            fitted = None if family is None else fit_object(passes, family, level)
+            beside = ("friction",) if friction == "auto" else ()
+            fitted = None if family is None else fit_object(passes, family, level, beside)
         except NoFamilyError as error:
             none = error
     # The fit takes 60 MB, and what draws 50: it is loaded when the fit has gone.

@@ -13,13 +13,7 @@ from typing import TYPE_CHECKING
 from rich import box
 from rich.console import Console, JustifyMethod
 from rich.measure import Measurement
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Column
 from rich.table import Table as RichTable
 from rich.text import Text as RichText

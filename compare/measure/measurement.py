@@ -139,10 +139,7 @@ class Measurement(SweepPair[Readings]):
 
 
 def measure(
-    reference: Readings,
-    candidate: Readings,
-    window: float,
-    offset: float | Literal["auto"] = 0.0,
+    reference: Readings, candidate: Readings, window: float, offset: float | Literal["auto"] = 0.0
 ) -> Measurement:
     """Measure how far `candidate` is from `reference`, from their readings alone."""
     for which, sweep in (("reference", reference), ("candidate", candidate)):
@@ -172,11 +169,7 @@ def measure(
         shift = Offset(0.0 if offset == "auto" else checked_offset(offset))
     candidate = without_offset(candidate, shift.value)
     alignment = align(
-        reference,
-        candidate,
-        judged["reference"],
-        judged["candidate"],
-        records["candidate"].dropped,
+        reference, candidate, judged["reference"], judged["candidate"], records["candidate"].dropped
     )
 
     def at(one: tuple[float | None, float], other: tuple[float | None, float]) -> Occurrence:

@@ -181,12 +181,7 @@ class CaseFile(Table):
         beam, contour, held = self.physics(folder)
         try:
             return Case(
-                beam,
-                contour,
-                self.way(),
-                self.name or name,
-                others=tuple(others),
-                **held._asdict(),
+                beam, contour, self.way(), self.name or name, others=tuple(others), **held._asdict()
             )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)

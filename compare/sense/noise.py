@@ -7,13 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.from_clamp.noise import (
-    SIGMAS,
-    correlation_of,
-    largest,
-    reading_noise,
-    resting_noise,
-)
+from analytic.from_clamp.noise import SIGMAS, correlation_of, largest, reading_noise, resting_noise
 
 NOTHING = 1e-100  # in any units: less is no load
 # Relative standard uncertainties of a level, times the root of the number of stations it is from:

@@ -19,6 +19,7 @@ from compare.show.document import Block, Table, Text
 from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line
 
+_PLAIN = ("exponent", "log", "axis", "friction")  # numbers without a unit
 _CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
@@ -67,7 +68,7 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
 def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
     unit = "m" if si else ""
     rows = [
-        (*_interval(name, one), "" if name.startswith(("exponent", "log", "axis")) else unit)
+        (*_interval(name, one), "" if name.startswith(_PLAIN) else unit)
         for name, one in found.found.items()
     ]
     head = ("found", "value", "95 % from", "to", "")

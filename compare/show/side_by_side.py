@@ -126,11 +126,7 @@ def side_by_side_document(found: SideBySide) -> Document:
         f"{found.case} side by side: {', '.join(one.name for one in found.outcomes)}",
         f"{object_of(reference)}; {len(reference.table)} stations. Differences are root mean "
         "squares over the stations in contact, relative to each reading's largest magnitude.",
-        Verdict(
-            found.agree,
-            _tally(found),
-            "" if found.split is None else found.split.sentence,
-        ),
+        Verdict(found.agree, _tally(found), "" if found.split is None else found.split.sentence),
         sections(
             ("engines", "Sweeps", _sweeps(found)),
             ("split", "What the disagreement is made of", _split(found)),

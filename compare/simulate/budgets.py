@@ -27,9 +27,7 @@ from mujoco_models.user_model.names import OwnModel
 
 @overload
 def measure_budget(
-    case: Case,
-    settings: Settings | None = None,
-    advance: Callable[[], None] = lambda: None,
+    case: Case, settings: Settings | None = None, advance: Callable[[], None] = lambda: None
 ) -> tuple[Budget, Mapping[str, Readings]]: ...
 
 

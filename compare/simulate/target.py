@@ -101,10 +101,7 @@ class Fastest:
 
 
 def find_fastest(
-    exact: Readings,
-    runs: Mapping[str, Readings],
-    move: Callable[[float], Readings],
-    target: float,
+    exact: Readings, runs: Mapping[str, Readings], move: Callable[[float], Readings], target: float
 ) -> Fastest:
     """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
     known = [runs[name] for name in THREE_SPEEDS if name in runs]

@@ -26,10 +26,7 @@ _WARP, _MJX = "mujoco-warp>=4.0,<5", "mujoco-mjx>=3.17,<5"
 def evaluators() -> dict[str, Evaluate]:
     """All that are installed; raises InputError if none is, or one of a wrong version."""
     (warp, no_warp), (mjx, no_mjx) = installed(_WARP), installed(_MJX)
-    for name, version, trouble in (
-        ("mujoco-warp", warp, no_warp),
-        ("mujoco-mjx", mjx, no_mjx),
-    ):
+    for name, version, trouble in (("mujoco-warp", warp, no_warp), ("mujoco-mjx", mjx, no_mjx)):
         if version is not None and trouble is not None:
             raise InputError(name, version, "one that --float32 knows", trouble)
     found: dict[str, Evaluate] = {}

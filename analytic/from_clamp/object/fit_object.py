@@ -68,6 +68,7 @@ def fit_object(
     readings: Readings | Sequence[Readings],
     family: str = "circle",
     noise: Mapping[str, float] | None = None,
+    beside: Sequence[str] = (),
 ) -> FittedObject:
     """The object of a family whose closed form explains the clamp's readings best.
 
@@ -88,6 +89,9 @@ def fit_object(
     noise : mapping, optional
         Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
         it is what the readings themselves show.
+    beside : sequence of str, optional
+        What is unknown of the vibrissa, too, as ``"friction"``, by the names of `calibrate`. An
+        estimate that the readings are given with is taken for exact otherwise.
 
     Returns
     -------
@@ -103,7 +107,7 @@ def fit_object(
     """
     check_family(family, FAMILIES)
     passes = as_passes(readings)
-    fit = families_fitted(passes, noise, late_if_both_ways(passes))
+    fit = families_fitted(passes, noise, (*beside, *late_if_both_ways(passes)))
     return likeliest(
         family,
         FAMILIES,

@@ -12,7 +12,7 @@ from compare.align.frames import COMPONENTS
 from compare.explain.split import Split
 from compare.read.runs import EngineOutcome, read_runs
 from compare.report import write_report
-from compare.show.page import as_json
+from compare.show.page import write_all
 from tests.compare.planted import planted
 from tests.compare.show.pages import Page
 from tests.compare.show.sweeps import two_runs
@@ -95,8 +95,7 @@ def engines_left(folder, implementation=1e-9):
     slow = EngineOutcome("slow", "twin", "1.0", trouble="not finished after 20 s")
     never = EngineOutcome("never", rms=dict.fromkeys(CLAMP_READINGS, math.nan))
     content = {"case": "catenary", "engines": [*swept, slow, never], "split": split}
-    folder.mkdir(parents=True)
-    (folder / "engines.json").write_text(as_json(content))
+    write_all(folder, {"engines.json": content})
 
 
 def test_runs_in_many_engines_are_split(tmp_path):
