@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, Protocol, TypeAlias, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
@@ -47,14 +47,6 @@ class Pose(NamedTuple):
         sin, cos = np.sin(self.angle), np.cos(self.angle)
         x, y = x - self.foot_x, y - self.foot_y
         return x * cos + y * sin, y * cos - x * sin
-
-
-class Poses(Protocol):
-    def at(self, p: Floats) -> Pose:
-        """Poses, shape of `p`."""
-
-    def rate(self, p: Floats) -> Pose:
-        """Their derivatives by the parameter."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +92,9 @@ class Through:
     @cached_property
     def _rate(self) -> "PchipInterpolator":
         return self._between.derivative()
+
+
+Poses: TypeAlias = Straight | Through  # over a parameter
 
 
 def travelled(poses: Floats) -> Floats:

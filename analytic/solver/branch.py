@@ -10,19 +10,16 @@ left of a foot position holds the state there.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
-from typing import TypeAlias
 
 import numpy as np
 
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
-from analytic.solver.equilibria import equilibria, surplus_and_rate
+from analytic.solver.equilibria import surplus_and_rate
 from analytic.solver.general.path import cells, phase_limits
-from analytic.solver.grid import Grid, Samples, along, folded
+from analytic.solver.grid import Samples, along, folded
 
-_ASIDE = 1e-3  # of a cell: next to a minimum x0 is higher by far more than rounding there
 _ROUNDING = 8 * float(np.finfo(float).eps)
 
 
@@ -63,13 +60,12 @@ class Branch:
 def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch]:
     """Follow the equilibria along dimensionless contours, from first contact to snap-off."""
     last, first = np.array(reaches).T
-    grid, samples, folds = folded(many, along(many, first, last))
+    grid, samples = folded(many, along(many, first, last))
     ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))
     parts = [
         _to_snap_off(grid.t[begin:end], take(samples, slice(begin, end)))
         for begin, end in pairwise(ends)
     ]
-    _refine(many, parts, folds)
     counts = [len(t) - 1 for t, _ in parts]
     owner = np.repeat(np.arange(len(many)), counts)
     middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _ in parts])
@@ -81,41 +77,9 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
     ]
 
 
-_Part: TypeAlias = tuple[Floats, Samples]  # contour parameters and states along a branch
-
-
-def _to_snap_off(t: Floats, samples: Samples) -> _Part:
+def _to_snap_off(t: Floats, samples: Samples) -> tuple[Floats, Samples]:
     """Up to the least foot position, at least two points; of one found twice the first."""
     snap_off = t[np.argmin(samples.foot_x)]
     least = int(np.argmax(t <= snap_off + _ROUNDING * max(1.0, abs(snap_off))))
     which = np.arange(least + 1) if least else np.zeros(2, dtype=int)
     return t[which], take(samples, which)
-
-
-def _refine(many: Contours, parts: list[_Part], folds: Grid) -> None:
-    """Put the snap-off where x0 is least, where that is not known."""
-    folded = set(zip(folds.owner.tolist(), folds.t.tolist(), strict=True))
-    for i, (t, samples) in enumerate(parts):
-        at, width, foot_x = float(t[-1]), float(t[-2] - t[-1]), float(samples.foot_x[-1])
-        if width > 0 and (i, at) not in folded:
-            beside = at + _ASIDE * width * np.array([-1, 1])
-            places = equilibria(many.contours[i], beside).foot_x
-            if (places < foot_x - _ROUNDING * max(1.0, abs(foot_x))).any():
-                t[-1], samples.foot_x[-1], samples.tip_rotation[-1] = _lowest(
-                    many.contours[i], at, width, foot_x
-                )
-
-
-def _lowest(contour: Contour, at: float, width: float, foot_x: float) -> tuple[float, float, float]:
-    """The snap-off's parameter, foot position and excess rotation, next to what was found."""
-    from scipy.optimize import minimize_scalar  # slow to load, and few contours need it
-
-    def place(t: float) -> float:
-        value = float(equilibria(contour, np.array([t])).foot_x[0])
-        return foot_x + 1 if np.isnan(value) else value  # out of reach
-
-    search = minimize_scalar(
-        place, bounds=(at - width, at + width), method="bounded", options={"xatol": 1e-9 * width}
-    )
-    lowest = equilibria(contour, np.array([search.x]))
-    return float(search.x), float(lowest.foot_x[0]), float(lowest.tip_rotation[0])

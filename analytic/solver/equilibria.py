@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipe, ellipk
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.roots import zeros
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,
@@ -23,12 +24,11 @@ from analytic.solver.elastica import (
 )
 from analytic.solver.general.states import INSIDE, States, Vibrissa
 
-_MAX_ITERATIONS = 60  # bisection alone would halve the bracket to round-off in 53
+_STRAIGHT = 1e-30  # p of a tip that has not turned
 _STEPS = 3  # of Halley's method, before those that need more of them are enclosed
 _CLOSE = 1e-5  # of a step of third order, relative: the next one would change round-off only
 
 _LEAST = 1e-40  # of the sag: less is rounding, but the square root of this one is not zero
-_ROUNDING = float(np.finfo(float).eps)  # of the height [L]
 
 
 def greatest_height(alpha: Floats) -> Floats:
@@ -67,7 +67,6 @@ def tip_state(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> tuple
 
 def _turned(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
     """Excess and integrals, shape (4, n), of tips that have sunk by the square of `sag`."""
-    start = p
     with np.errstate(all="ignore"):  # hardly bent: no step
         for _ in range(_STEPS):
             tried = _tried(p, alpha)
@@ -82,31 +81,21 @@ def _turned(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
         found: Floats = tried.turned_to(new)
     poor = (~(close & (new <= high))).nonzero()[0]
     if poor.size:
-        found[:, poor] = _enclosed(alpha[poor], sag[poor], start[poor], high[poor])
+        found[:, poor] = _enclosed(alpha[poor], sag[poor], high[poor])
     return found
 
 
-def _enclosed(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
-    """What `_turned` has, by the same steps, but halves of a bracket where one leaves it."""
-    found, left, low = np.empty((4, p.size)), np.arange(p.size), np.zeros_like(p)
-    for last in range(_MAX_ITERATIONS, 0, -1):
-        with np.errstate(divide="ignore", invalid="ignore"):  # hardly bent: no step, but a half
-            tried = _tried(p, alpha)
-            deviation, step = _halley(p, tried, sag)
-        low = np.where(deviation < 0, p, low)
-        high = np.where(deviation > 0, p, high)
-        new = p - step
-        inside = (new >= low) & (new <= high)
-        # Where the height agrees to a rounding it is done: hardly bent, steps would go to and fro.
-        agrees = np.abs(deviation) * np.abs(deviation + 2 * sag) <= _ROUNDING
-        new = np.where(inside, new, np.where(agrees, p, (low + high) / 2))
-        done = agrees | (np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new) | (last == 1)
-        found[:, left] = tried.turned_to(new)
-        left = left[~done]
-        if not left.size:
-            break
-        p, low, high, alpha, sag = (x[~done] for x in (new, low, high, alpha, sag))
-    return found
+def _enclosed(alpha: Floats, sag: Floats, high: Floats) -> Floats:
+    """What `_turned` has, by enclosing p."""
+
+    def sunk_farther(which: Integers, p: Floats) -> Floats:
+        slope, loaded = alpha[which], span(2 * np.arcsin(p * p), alpha[which])
+        return np.sqrt(np.maximum(1 - frame(loaded, slope).up / loaded.q, 0.0)) - sag[which]
+
+    least = np.full_like(high, _STRAIGHT)
+    hardly = sunk_farther(np.arange(least.size), least) >= 0  # but for rounding of the height
+    excess = 2 * np.arcsin(np.where(hardly, least, zeros(sunk_farther, least, high)) ** 2)
+    return np.array([excess, *span(excess, alpha)])
 
 
 def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats, high: Floats) -> Floats:

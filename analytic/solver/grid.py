@@ -162,7 +162,7 @@ class Samples(NamedTuple):
     tip_rotation_rate: Floats  # derivative of the excess rotation in Phase A
 
 
-def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
+def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples]:
     """Foot positions along the grids, with more points of them where it folds."""
     grid, point = _to_end_of_reach(contours, grid)
     samples = _sampled(point)
@@ -177,12 +177,12 @@ def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
             break
         grid, values = _merged(grid, tuple(samples), new, tuple(_sample(contours, new)))
         samples = Samples(*values)
-    folds, beside, found = _folds(contours, grid, samples)
-    if folds.t.size:
+    beside, found = _folds(contours, grid, samples)
+    if beside.t.size:
         grid, values = _merged(grid, tuple(samples), beside, tuple(found))
         samples = Samples(*values)
     reached = _before_first(grid, np.isnan(samples.foot_x))
-    return take(grid, reached), take(samples, reached), folds
+    return take(grid, reached), take(samples, reached)
 
 
 def _to_end_of_reach(contours: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
@@ -217,7 +217,7 @@ def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
     return np.asarray(so_far == before[grid.owner])
 
 
-def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
+def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Samples]:
     """Where the foot position is least between neighbours, if it may be less than all before."""
     foot_x, rate = samples.foot_x, samples.rate
     before = np.where(np.isnan(rate[:-1]), 1.0, rate[:-1])
@@ -261,7 +261,7 @@ def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid
     every = np.concatenate([every, places[:, [0, -1]]], axis=1)
     values = np.concatenate([values, sampled[:, :, [0, -1]]], axis=2)
     beside = Grid(np.repeat(owner, every.shape[1]), every.ravel())
-    return Grid(owner, t), beside, Samples(*values.reshape(len(values), -1))
+    return beside, Samples(*values.reshape(len(values), -1))
 
 
 def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:

@@ -17,9 +17,8 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
-from analytic.space.solver.contact import APART, Contact, Scene, contact_at
+from analytic.space.solver.contact import APART, Contact, Scene, contact_at, settle, settle_whole
 from analytic.space.solver.descent import Touching, descend
-from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
 _FARTHEST = 0.12  # L, of the contact: what lands farther away depends on its motion

@@ -11,9 +11,8 @@ from analytic.numerics.walk import WalkEvent, first_unlike
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.path import StraightVibrissa
-from analytic.space.solver.contact import APART, Contact, Scene, contact_at
+from analytic.space.solver.contact import APART, Contact, Scene, contact_at, settle, settle_whole
 from analytic.space.solver.hop import DependsOnMotion, landing
-from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
 _CLOSE = 1e-13  # L of the way, to which events are enclosed
