@@ -38,6 +38,7 @@ _LEAST = 1e-9  # of the largest force or moment; readings without noise count as
 _ZERO = 1e-3  # of the same: what a sensor's zero is known to
 _FAINT = 0.02  # of the largest force: where a zero that drifts looks like a contact
 _CLEAR = 4.0  # standard deviations between a contact at the tip and one before it
+_NEAR = 0.05  # L; noise that moves a contact farther is not where readings are linear in it
 _BESIDE_SLIP_OFF = 0.02  # of the loaded stations: readings grow without bound there
 _STEP = 1e-6  # of a component or a number, for a derivative
 _FARTHEST = 8.0  # standard deviations that readings are off: not where it is linearised
@@ -207,7 +208,7 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     reach, release = found[6:]
     before = reach < 1 - _CLEAR * np.sqrt(variance[0])
     at_tip = release > _CLEAR * np.sqrt(variance[1])
-    kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip)
+    kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip) & (variance[0] < _NEAR**2)
     return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread)
 
 
