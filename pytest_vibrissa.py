@@ -317,12 +317,12 @@ def _swept(
     solve: Callable[[Any], Any],
     simulate: Callable[[Any, Any], Any],
 ) -> Callable[..., Any]:
-    """Sweeps of a case: the closed form's, or with a beam MuJoCo's, whose settings words change."""
+    """Sweeps of a case: the closed form's; with a beam, or words of settings, MuJoCo's."""
 
     def made(beam: BeamKind | None = None, **words: Any) -> Any:  # noqa: ANN401
-        if beam is None:
+        if beam is None and not words:
             return sweeps.once((key, None), lambda: solve(case))
-        numerics = replace(settings, beam=beam, **words)
+        numerics = replace(settings, **({} if beam is None else {"beam": beam}), **words)
         return sweeps.once((key, repr(numerics)), lambda: simulate(case, numerics))
 
     return made

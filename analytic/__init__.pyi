@@ -51,7 +51,7 @@ from .solver.events import find_many_events as find_many_events
 from .solver.friction import with_friction as with_friction
 from .solver.reversal import stiction_limits as stiction_limits
 from .solver.reversal import turn_back as turn_back
+from .solver.sweep import Unsolved as Unsolved
 from .solver.sweep import solve_sweep as solve_sweep
-from .solver.sweeps import Unsolved as Unsolved
-from .solver.sweeps import solve_sweeps as solve_sweeps
+from .solver.sweep import solve_sweeps as solve_sweeps
 from .solver.tilt import slip_off as slip_off

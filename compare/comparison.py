@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 
 from analytic import PHASES, Case, InputError, Readings
 from analytic.problem.errors import require
 from analytic.space import SpatialReadings
+from compare.align.frames import Frame
 from compare.align.stations import check_same_stations
 from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
@@ -23,12 +24,7 @@ from compare.judge.allowance import (
 )
 from compare.judge.failures import Failure, failures, failures_in_space
 from compare.judge.judged import Judged, Number
-from compare.judge.tolerances import (
-    SpatialTolerances,
-    Tolerances,
-    checked_limits,
-    in_segments,
-)
+from compare.judge.tolerances import SpatialTolerances, Tolerances, checked_limits, in_segments
 from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import Noise, checked_level, noise_level
@@ -36,9 +32,6 @@ from compare.sense.occurrence import Occurrence
 from compare.sense.touching import component_levels, component_scales
 from compare.validate.stated import Input, Uncertainties
 from compare.validate.validation import Side, Validation, validate
-
-if TYPE_CHECKING:
-    from compare.align.frames import Frame
 
 _EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
 _KEPT = ("rms", "max", "at", "phase", "rms_by_phase", "scale")  # of a disagreement in space
@@ -127,9 +120,9 @@ class Comparison(Judged[Readings], Measurement):
         agreement = self.phase_agreement()
         return {
             "likely": self.likely,
-            "offset": asdict(self.offset),
+            "offset": self.offset,
             **({} if self.validation is None else {"validation": self.validation.to_dict()}),
-            "disagreement": {name: asdict(one) for name, one in self.disagreement.items()},
+            "disagreement": self.disagreement,
             "phases": {
                 "agreement": min(agreement.values()) if agreement else None,
                 "agreement_by_sweep": agreement,
@@ -290,8 +283,15 @@ def compare(
         if offset != 0:
             raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
         candidate = require("candidate", candidate, SpatialReadings, _AS_TABLE)
-        in_space = checked_limits(tolerances, SpatialTolerances)
-        return _in_space(reference, candidate, in_space, noise, frame)
+        limits = checked_limits(tolerances, SpatialTolerances)
+        limits = limits if in_segments(candidate) else limits.by_convention()
+        check_same_stations(reference, candidate)
+        scales = component_scales(reference)
+        level = component_levels(reference, candidate, noise, scales)
+        stated = {name: level[name] * scales[name] for name in level}
+        in_space = measure_in_space(reference, candidate, stated, frame)
+        widened = spatial_allowance(reference, level, stated, in_space.touching.clear)
+        return SpatialComparison(**vars(in_space), tolerances=limits, noise=widened)
     if frame != "world":
         raise InputError("frame", repr(frame), "'world' in the plane", "leave it out")
     reference = require("reference", reference, Readings, _AS_TABLE)
@@ -302,26 +302,8 @@ def compare(
         allowance = noise_allowance(reference, noise_level(reference, found.candidate))
     else:
         allowance = noise_allowance(reference, Noise(checked_level(noise)))
-    widened = {
+    events = {
         name: replace(event, uncertainty=event.uncertainty + allowance.transitions.get(name, 0.0))
         for name, event in found.events.items()
     }
-    return Comparison(**(vars(found) | {"events": widened}), tolerances=tolerances, noise=allowance)
-
-
-def _in_space(
-    reference: SpatialReadings,
-    candidate: SpatialReadings,
-    tolerances: SpatialTolerances,
-    noise: float | Literal["auto"],
-    frame: Frame,
-) -> SpatialComparison:
-    if not in_segments(candidate):
-        tolerances = tolerances.by_convention()
-    check_same_stations(reference, candidate)
-    scales = component_scales(reference)
-    level = component_levels(reference, candidate, noise, scales)
-    stated = {name: level[name] * scales[name] for name in level}
-    found = measure_in_space(reference, candidate, stated, frame)
-    allowance = spatial_allowance(reference, level, stated, found.touching.clear)
-    return SpatialComparison(**vars(found), tolerances=tolerances, noise=allowance)
+    return Comparison(**(vars(found) | {"events": events}), tolerances=tolerances, noise=allowance)

@@ -9,7 +9,7 @@ from analytic.problem.files import as_path
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.read.run_folder import read_run
 from compare.show.document import Film
-from compare.show.page import html, write_all
+from compare.show.page import write_all
 from compare.show.report import write_report as write_page
 from compare.show.runs import runs_document
 from compare.study.show.study_report import write_report as write_study_report
@@ -62,7 +62,7 @@ def write_report(
     if (folder / "study.json").exists():
         return Report(write_study_report(folder, warn, place))
     if not any(folder.glob("*.parquet")):
-        return Report(write_all(place, {"report.html": html(runs_document(folder))})[-1])
+        return Report(write_all(place, {"report.html": runs_document(folder)})[-1])
     stored, film = read_run(folder), Film.of(folder)
     found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
     if isinstance(found, Comparison):

@@ -14,7 +14,6 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from engines.surface import Surface
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.vibrissa import Vibrissa
 
@@ -25,6 +24,7 @@ _LEAST = 1e-2  # EI/L^2, EI/L; forces and moments below that are counted as if t
 _PLACES = 1e-3  # L; a soft contact is F/k deep: 5e-4 L under the largest load at 1e4 EI/L^3
 _NORMALS = 5e-3  # rad; ten times what a fine polygon turns; of a friction as large, too
 _FEELS = 1e-2  # of the largest force; smaller ones may be anywhere
+_POINTS = 2000  # of the contour; a distance is then right to 1e-6 of its radius of curvature
 
 
 @dataclass(frozen=True)
@@ -227,3 +227,25 @@ def on_axis(state: State, points: Floats) -> tuple[Integers, Floats, Floats]:
     link = beside.argmin(axis=1)
     each = np.arange(len(points))
     return link, place[each, link], beside[each, link]
+
+
+class Surface:
+    """What the centreline of a case's vibrissa feels, dimensionless: L = 1.
+
+    The contour as lines that have it on one side.
+    """
+
+    def __init__(self, case: Case) -> None:
+        last, first = case.reach
+        line = case.centreline
+        marks = np.concatenate([[last], line.breaks(), [first]])
+        middles = (marks[1:] + marks[:-1]) / 2  # one on every edge
+        middles = middles[(middles > last) & (middles < first)]
+        on = line.at(np.concatenate([np.linspace(last, first, _POINTS), middles]))
+        self._normals = np.column_stack([np.sin(on.alpha), -np.cos(on.alpha)])
+        self._heights = on.xi * self._normals[:, 0] + on.eta * self._normals[:, 1]
+
+    def outward(self, points: Floats) -> tuple[Floats, Floats]:
+        """How far out points are, negative inside, shape (n,), and the normals there, (n, 2)."""
+        out = points @ self._normals.T - self._heights
+        return out.max(axis=1), self._normals[out.argmax(axis=1)]

@@ -59,7 +59,7 @@ def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIME
     """
     pool = ProcessPool(1, context=get_context("spawn"))
     try:
-        found = pool.schedule(_sweep, (name, case, settings), timeout=timeout).result()
+        return pool.schedule(_sweep, (name, case, settings), timeout=timeout).result()
     except TimeoutError:
         return Outcome(name, trouble=f"not finished after {timeout:g} s ([engine] timeout)")
     except ProcessExpired as error:
@@ -69,20 +69,17 @@ def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIME
     finally:
         pool.stop()  # type: ignore[no-untyped-call]
         pool.join()
-    if isinstance(found, str):
-        return Outcome(name, trouble=found)
-    return Outcome(name, found)
 
 
-def _sweep(name: str, case: Case, settings: Settings) -> Readings | str:
-    """In the other process: readings, or a line that says why there are none."""
+def _sweep(name: str, case: Case, settings: Settings) -> Outcome:
+    """In the other process."""
     try:
         case.require_sweep(f"the engine {name}")
-        return checked(find_engine(name).sweep(case, settings), case)
+        return Outcome(name, checked(find_engine(name).sweep(case, settings), case))
     except InputError as error:
-        return str(error)
+        return Outcome(name, trouble=str(error))
     except BaseException as error:  # an engine may raise, or exit
-        return _one_line(error)
+        return Outcome(name, trouble=_one_line(error))
 
 
 def _one_line(error: BaseException) -> str:

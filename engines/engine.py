@@ -34,7 +34,7 @@ class Engine(Protocol):
         Parameters
         ----------
         case : Case
-            The problem, whichever way its foot moves: `analytic.problem.mirror` turns it.
+            The problem, whichever way its foot moves: `analytic.problem.recorder` turns it.
         settings : Settings
             Number of segments, contact stiffness and the like; what has no meaning for the engine
             it ignores.

@@ -25,12 +25,9 @@ def named_engines(names: str) -> list[str]:
         return listed  # nothing in them is worth a look at every distribution that is installed
     known = known_engines()
     if len(set(listed)) < len(listed) or not set(listed) <= set(known):
-        raise InputError(
-            "engine",
-            repr(names),
-            f"names between commas, each once, of {', '.join(known)}",
-            near(", ".join(name for name in listed if name not in known), known, LISTED),
-        )
+        allowed = f"names between commas, each once, of {', '.join(known)}"
+        remedy = near(", ".join(name for name in listed if name not in known), known, LISTED)
+        raise InputError("engine", repr(names), allowed, remedy)
     return listed
 
 

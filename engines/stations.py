@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from analytic.problem.case import Case
-from analytic.problem.mirror import facing, leftward
+from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
-from analytic.problem.recorder import Recorder
+from analytic.problem.recorder import Recorder, facing, leftward
 
 # L; where nothing else is asked for, a step of the foot that small which leaves the branch is at
 # its end
@@ -60,6 +60,15 @@ class Row:
     contact_y: float = np.nan
     residual: float = 0.0
     doubt: str = ""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if name not in ("phase", "doubt"):
+                try:  # an array of one number is one, too
+                    object.__setattr__(self, name, float(np.asarray(value).item()))
+                except (TypeError, ValueError) as error:
+                    what = f"{value!r}"[:80]
+                    raise InputError(f"Row.{name}", what, "a number", "give a float") from error
 
     @property
     def load(self) -> float:
@@ -145,15 +154,11 @@ def sweep_stations(
     for target in stations:
         row = walk.go_to(target)
         unsettled.update([row.doubt] if row.doubt else [])
-        recorder.rows.append(_recorded(row))
+        columns = asdict(row)
+        status = "unsettled" if columns.pop("doubt") else "ok"
+        recorder.rows.append({**columns, "status": status})
         advance()
     return facing(case, recorder.readings())
-
-
-def _recorded(row: Row) -> dict[str, Any]:
-    columns = asdict(row)
-    status = "unsettled" if columns.pop("doubt") else "ok"
-    return {**columns, "status": status}
 
 
 class _Walk:
@@ -182,6 +187,8 @@ class _Walk:
             begin = False
             trial = target if abs(step) >= abs(target - self.foot_x) else self.foot_x + step
             row = self._rest.at(trial)
+            if row is not None:
+                require("what `at` returned", row, Row, "as Row(force_x=..., ...), or None")
             if row is not None and self._follows(row):
                 self._rest.accept()
                 self.foot_x, self._last = trial, row

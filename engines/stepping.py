@@ -110,11 +110,9 @@ def sweep_stepping(
     InputError
         As `stepper` does.
     """
-
-    def rest(leftward: Case) -> SteppedRest:
-        return SteppedRest(leftward, stepper(leftward))
-
-    return sweep_stations(case, rest, source, about, advance, smallest)
+    return sweep_stations(
+        case, lambda left: SteppedRest(left, stepper(left)), source, about, advance, smallest
+    )
 
 
 class SteppedRest:

@@ -15,10 +15,10 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Pose
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import facing, leftward
-from analytic.problem.poses import Pose
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import facing, leftward
 from engines.agreement import resultant
 from engines.linkage import Maker
 from mujoco_models.beams.layout import OF_CURVATURE
@@ -93,12 +93,7 @@ class Twin(Balance):
     """See `mujoco_models.model.balance.Balance`."""
 
     def __init__(
-        self,
-        make: Maker,
-        beam: Beam,
-        radius: float,
-        obstacle: Obstacle,
-        contact_stiffness: float,
+        self, make: Maker, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float
     ) -> None:
         self.layout, self.obstacle, self._beam, self.radius = beam.layout, obstacle, beam, radius
         self.contact_stiffness, self.evaluations = contact_stiffness, 0
@@ -126,17 +121,14 @@ class Twin(Balance):
         self._joints, self._places = self._linkage.place(float(pose.foot_x), angles)
         near = self.obstacle.near(self._places, self.radius + CONTACT_GAP).tolist()
         self._contacts = self._at_beads([i for i in near if i in self._watched])
-        loaded = self._contacts.loaded
-        beads, self._forces = self._contacts.touch[loaded], self._push()[loaded]
+        found, loaded = self._contacts, self._contacts.loaded
+        push = -self.contact_stiffness * found.distance[:, None] * found.normal
+        beads, self._forces = found.touch[loaded], push[loaded]
         self._elastic, contacts = self._linkage.moments(beads, self._forces)
         self._moments = self._elastic + contacts
         if not np.isfinite(self._moments).all():
             raise DivergedError("the moments at the joints are not finite")
         return self._moments
-
-    def _push(self) -> Floats:
-        found = self._contacts
-        return np.asarray(-self.contact_stiffness * found.distance[:, None] * found.normal)
 
     def _at_beads(self, beads: list[int]) -> Contacts:
         """Contacts of beads by normal and distance, none of a link's side."""
@@ -199,12 +191,9 @@ class Twin(Balance):
 def _check(beam: Beam, obstacle: Obstacle, name: str) -> None:
     """Raise InputError for what only MuJoCo's links or sliding beads can touch."""
     if len(obstacle.corners):
-        raise InputError(
-            f"object for {name}",
-            "with sharp corners",
-            "smooth, or a mesh whose facets turn by less than 2e-3 rad",
-            f"leave {name} out, or round the object",
-        )
+        allowed = "smooth, or a mesh whose facets turn by less than 2e-3 rad"
+        remedy = f"leave {name} out, or round the object"
+        raise InputError(f"object for {name}", "with sharp corners", allowed, remedy)
     layout = beam.layout
     spacing = float((layout.lengths / np.bincount(layout.links)).max())
     least = spacing / (2 * OF_CURVATURE)

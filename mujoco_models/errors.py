@@ -1,6 +1,6 @@
 """What can go wrong in a simulation."""
 
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 
 
 class DivergedError(ArithmeticError):

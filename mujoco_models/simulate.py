@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, overload
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.errors import require
-from analytic.problem.mirror import facing, keep_facing, leftward
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import facing, keep_facing, leftward
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import leftward
+from analytic.problem.recorder import leftward
 from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.settings import Settings

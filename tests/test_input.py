@@ -25,6 +25,7 @@ from analytic import (
     named_case,
     parabola,
     reconstruct,
+    relative_noise,
     solve_contact,
     solve_sweep,
 )
@@ -60,7 +61,7 @@ from mujoco_models import (
         (lambda: Case(profile=circle(1, (0, 0.004))), "-0.001 L"),
         (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(start=0)), "sweep.start = 0"),
         (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(stop=3)), "sweep.stop = 3"),
-        (lambda: named_case("catenry"), "'catenry'"),
+        (lambda: named_case("mine.toml"), "`compare.load_case` reads a TOML file"),
         (lambda: solve_sweep(named_case("parabola")).values("forcex"), "did you mean force_x?"),
         (lambda: Readings.of({"foot_x": [1, 2]}), "add force_x, force_y"),
         (lambda: solve_contact(catenary(0.5, -0.8), [2.0]), "alpha = 2.0 rad"),
@@ -161,13 +162,14 @@ def test_readings_that_cannot_be_compared():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: find_events("catenary"), "profile = 'catenary': must be a Contour"),
+        (lambda: find_events(named_case("catenary")), "or a case's profile"),
         (lambda: solve_contact(None, [0.1]), "profile = a NoneType"),
         (lambda: solve_contact(catenary(0.5, -0.8), "x"), "alpha = 'x'"),
         (lambda: solve_contact(catenary(0.5, -0.8), [0.1], 1.0), "beam = a float"),
         (lambda: solve_sweep("catenary"), "case = 'catenary': must be a Case"),
         (lambda: simulate_sweep(named_case("catenary"), {"segments": 3}), "settings = a dict"),
         (lambda: reconstruct(pd.DataFrame()), "readings = a DataFrame"),
+        (lambda: relative_noise(pd.DataFrame({"foot_x": [1]}), 0.01), "readings = a DataFrame"),
         (lambda: Readings.read(3), "readings file = a int: must be a path"),
         (lambda: Readings.read_table(None), "readings file = a NoneType"),
         (lambda: mesh_section([1]), "mesh file = a list: must be a path"),

@@ -1,4 +1,4 @@
-"""The paper's own routes to the tip's angle, slower than `analytic.solver`, which they check."""
+"""The paper's own routes to one contact, and integration: what `analytic.solver` is checked by."""
 
 from analytic.problem.lazy import attach
 

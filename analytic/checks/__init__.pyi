@@ -1,3 +1,3 @@
-from .boundary_value import boundary_value_problem as boundary_value_problem
-from .tip_angle import tip_angle_by_quadrature as tip_angle_by_quadrature
-from .tip_angle import tip_angle_by_shooting as tip_angle_by_shooting
+from .paper import boundary_value_problem as boundary_value_problem
+from .paper import tip_angle_by_quadrature as tip_angle_by_quadrature
+from .paper import tip_angle_by_shooting as tip_angle_by_shooting

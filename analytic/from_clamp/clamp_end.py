@@ -20,8 +20,7 @@ from scipy.special import elliprf
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.rod import RodProperties
-from analytic.solver.general.march import SpanEnd, Trail, march
-from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general.span import SpanEnd, Trail, back_to_clamp, march
 from analytic.solver.general.states import Vibrissa
 
 # Where the vibrissa is nearly square to the force at its contact (p^2 below), its moment is the
@@ -59,7 +58,6 @@ class ClampEnd(NamedTuple):
 
     @classmethod
     def of(cls, force_x: Floats, force_y: Floats, moment: Floats, vibrissa: Vibrissa) -> "ClampEnd":
-        """What the readings say of the clamp's end."""
         direction = np.arctan2(-force_x, force_y)
         leant = vibrissa.clamp_angle - vibrissa.compliance * moment
         theta = np.pi / 2 + leant - direction
@@ -148,7 +146,6 @@ class ClampEnd(NamedTuple):
 
 
 def _contacts(end: ClampEnd) -> Floats:
-    """Arc lengths of the contacts, shape (n,)."""
     best, least = np.full(end.force.size, np.nan), np.full(end.force.size, np.inf)
     rod = end.vibrissa.rod
     for which, length, slope in _in_closed_form(end) if rod is None else _marched(end, rod):

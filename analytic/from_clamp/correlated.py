@@ -57,7 +57,6 @@ class NoiseFound:
         return self.correlation > _REMEMBERED
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
-        """What a user should know of it, a line each."""
         known = np.where(self.lasts | ~self.remembers, 0.0, self.memory)
         for name, memory in zip(names, known, strict=True):
             if memory:

@@ -16,7 +16,27 @@ Kind = TypeVar("Kind", bound="Fitted")
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Fitted(Shown):
-    """An object of a family: `FittedObject` in the plane, `FittedBody` in space."""
+    """An object of a family: `FittedObject` in the plane, `FittedBody` in space.
+
+    Parameters
+    ----------
+    family : str
+        As it was asked for, or the likeliest.
+    found : dict
+        `Estimate` by parameter, in the unit of the readings.
+    misfit : float
+        Root mean square of what the fit leaves, over the noise.
+    explains : bool
+        Whether noise alone explains that.
+    bic : float
+        Schwarz's criterion: the least of several families is the likeliest.
+    stations : int
+        How many the fit is from.
+    noise : NoiseFound
+        What of the noise remembers.
+    rivals : dict
+        `bic` and `explains` of each family that was tried.
+    """
 
     family: str
     found: dict[str, Estimate]
@@ -32,17 +52,13 @@ class Fitted(Shown):
             self.family: "explains the readings"
             if self.explains
             else "does not explain the readings",
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
+            **self.found,
             "misfit": f"{self.misfit:.3g}",
             "stations": self.stations,
         }
 
 
 def check_family(family: str, known: Sequence[str]) -> None:
-    """Refuse what is no family's name, and not ``"auto"``."""
     if family not in (*known, "auto"):
         raise unknown("family", family, (*known, "auto"))
 

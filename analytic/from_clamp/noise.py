@@ -8,7 +8,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import within
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, require_readings
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
@@ -130,7 +130,9 @@ def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dic
     if isinstance(level, bool | str) or not 0 <= level < 1:
         remedy = "it is a share of each reading's largest magnitude"
         raise InputError("noise", level, "between 0 and 1", remedy)
-    passes = [readings] if isinstance(readings, Readings) else readings
+    passes = [*readings] if isinstance(readings, Sequence) else [readings]
+    for one in passes:
+        require_readings(one)
     return {
         name: float(level) * max(largest(one.values(name)) for one in passes)
         for name in CLAMP_READINGS
@@ -159,11 +161,6 @@ def zero_uncertainty(readings: Readings, sizes: Floats) -> Floats:
     return np.asarray(np.maximum(stated, _SURELY * sizes), dtype=float)
 
 
-def bend_uncertainty(readings: Readings) -> Floats:
-    """What a bend of each zero's drift is known to, in the middle of a rig's pass; 0 of a line."""
-    return known_to("bend_uncertainty", readings)
-
-
 def known_to(what: str, readings: Readings) -> Floats:
     """What a rig's pass says of an uncertainty, shape (3,), in the reading's unit; 0 if nothing."""
     known = readings.provenance.get(what, {})
@@ -177,5 +174,4 @@ def covering(misses: Floats, axis: int) -> Floats:
 
 
 def largest(values: Floats) -> float:
-    """Largest magnitude of a reading."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

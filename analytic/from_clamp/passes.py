@@ -38,7 +38,6 @@ class Consistency:
 
     @property
     def consistent(self) -> bool:
-        """Whether the passes may differ by noise alone."""
         return self.probability > _BY_CHANCE
 
     @property

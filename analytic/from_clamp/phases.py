@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, dimensionless
+from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, as_upright, dimensionless
 from analytic.from_clamp.noise import (
     MEDIAN_OF_NORMAL,
     SIGMAS,
@@ -14,7 +14,6 @@ from analytic.from_clamp.noise import (
     reading_noise,
     resting_noise,
 )
-from analytic.from_clamp.turning import as_upright
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.readings import Readings

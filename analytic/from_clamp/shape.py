@@ -4,8 +4,7 @@ import numpy as np
 
 from analytic.checks.integration import march
 from analytic.checks.of_two import touches_twice
-from analytic.from_clamp.contact import SweptVibrissa, located
-from analytic.from_clamp.turning import shapes_turning
+from analytic.from_clamp.contact import SweptVibrissa, located, shapes_turning
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED

@@ -1,5 +1,6 @@
 """The vibrissa: an inextensible elastic beam with a round tip, uniform or not, straight or not."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -8,15 +9,144 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.along import Along, rescaled, values_at
+from analytic.problem.along import Along, rescaled, sampled, values_at
 from analytic.problem.arrays import Floats
-from analytic.problem.beam_checks import checked_curvature, checked_radii, checked_rigidity
 from analytic.problem.errors import InputError, require
-from analytic.problem.numbers import LARGEST, positive
-from analytic.problem.unloaded import Unloaded
+from analytic.problem.numbers import LARGEST, positive, within
+
+# Of the radius at the clamp; at a thousandth, the stiffness of the tip is rounding beside that of
+# the clamp, and a sweep finds no equilibria for minutes.
+_THINNEST = 0.0015
+_THICKEST = 0.1  # of the length
+_PLACES = 257  # at which a vibrissa that is curved at rest is looked at
+_MOST_CURVED = math.pi * (1 - 1e-12)  # 1/L; an arc of more is back at the foot line
 
 Varying: TypeAlias = float | Callable[[Floats], Floats] | Sequence[tuple[float, float]] | Along
 """A number, a function of arc length, or pairs (arc length, value) from clamp to tip."""
+
+
+@dataclass(frozen=True)
+class Unloaded:
+    """Shape and radius of a vibrissa at rest; arc lengths in units of its length."""
+
+    # Natural curvature, positive to the left of the way from clamp to tip [1/L].
+    natural: float | Along = 0.0
+    base_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
+    tip_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
+    angle: float = 0.0  # by which its clamp leans to the left of the upright [rad]
+
+    @property
+    def lean(self) -> float:
+        """Angle from the contour's tangent to the axis of a cone that touches it [rad]."""
+        return float(np.arcsin(self.base_radius - self.tip_radius))
+
+    @cached_property
+    def most_turned(self) -> float:
+        """The largest angle by which it turns from the upright, to either side [rad]."""
+        if not isinstance(self.natural, Along):
+            return max(abs(self.angle), abs(self.angle + self.natural))
+        s = np.linspace(0, 1, _PLACES)
+        return float(np.abs(self.at(s)[2] - np.pi / 2).max())
+
+    @property
+    def is_arc(self) -> bool:
+        """Whether curvature and radius are constant."""
+        return not isinstance(self.natural, Along) and self.base_radius == self.tip_radius
+
+    def curvature(self, s: Floats) -> Floats:
+        return values_at(self.natural, s)
+
+    def taper(self, s: Floats) -> Floats:
+        """By how much the radius exceeds that of the tip."""
+        return (self.base_radius - self.tip_radius) * (1 - s)
+
+    def at(self, s: Floats) -> tuple[Floats, Floats, Floats]:
+        """Places on the axis, as seen from the foot, and the slope angle there."""
+        x, y, slope = self._upright(s)
+        if self.angle == 0:
+            return x, y, slope
+        sin, cos = np.sin(self.angle), np.cos(self.angle)
+        return x * cos - y * sin, x * sin + y * cos, slope + self.angle
+
+    def _upright(self, s: Floats) -> tuple[Floats, Floats, Floats]:
+        natural = self.natural
+        if isinstance(natural, Along):
+            x, y, turn = self._integrals
+            return x(s), y(s), np.pi / 2 + turn(s)
+        turned = natural * s
+        half = np.sinc(turned / 2 / np.pi)  # sin(u/2)/(u/2)
+        chord = s * half
+        return -chord * np.sin(turned / 2), chord * np.cos(turned / 2), np.pi / 2 + turned
+
+    def turn_between(self, begin: Floats, end: float) -> Floats:
+        if isinstance(self.natural, Along):
+            turn = self._integrals[2]
+            return turn(np.array(end)) - turn(begin)
+        return self.natural * (end - begin)
+
+    def side(self, begin: Floats) -> Floats:
+        """Length of the side that touches an object, from a place to the tip."""
+        left, narrowing = 1 - begin, self.base_radius - self.tip_radius
+        turn = self.turn_between(begin, 1.0)
+        # The radius times the curvature, integrated by parts: the radius is linear.
+        if isinstance(self.natural, Along):
+            slope = self._integrals[2]
+            mean = slope.integral()
+            turned = slope(np.array(1.0)) * left - (mean(np.array(1.0)) - mean(begin))
+        else:
+            turned = turn * left / 2
+        shorter = (self.tip_radius + self.taper(begin)) * turn - narrowing * turned
+        return np.asarray(np.cos(self.lean) * left - shorter)
+
+    @cached_property
+    def _integrals(self) -> tuple[Along, Along, Along]:
+        assert isinstance(self.natural, Along)
+        turn = self.natural.integral()
+        name, kinks = "the vibrissa at rest", turn.ends[1:-1]
+        x = sampled(name, lambda s: -np.sin(turn(s)), 1.0, kinks)
+        y = sampled(name, lambda s: np.cos(turn(s)), 1.0, kinks)
+        return x.integral(), y.integral(), turn
+
+
+def checked_rigidity(given: object, length: float, of_cone: bool) -> float | Along:
+    """The flexural rigidity of a vibrissa; of a cone only a number follows its radius."""
+    name = "beam.flexural_rigidity"
+    found = Along.of(name, given, length) if _may_vary(given) else given
+    if not isinstance(found, Along):
+        value = positive(name, found)
+        return Along((0.0, length), ((value,),)) if of_cone and _may_vary(given) else value
+    place = found.first_not_positive()
+    if place is not None:
+        value = float(found(np.array(place)))
+        raise InputError(name, f"{value:g} at s = {place:g}", "positive all along")
+    return found
+
+
+def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[float, float | None]:
+    remedy = "a vibrissa is slender: check the units of radius and length"
+    base = within("beam.radius", radius, 0.0, math.nextafter(_THICKEST * length, 0), remedy)
+    if tip_radius is None:
+        return base, None
+    remedy = "it may not vanish, and is at least 0.0015 of the radius at the clamp"
+    least = max(_THINNEST * base, 1 / LARGEST)
+    return base, within("beam.tip_radius", tip_radius, least, base, remedy)
+
+
+def checked_curvature(given: object, length: float) -> float | Along:
+    name, remedy = "beam.natural_curvature", "beyond, it is curved back to the foot line"
+    found = Along.of(name, given, length) if _may_vary(given) else given
+    if not isinstance(found, Along):
+        return within(name, found, -_MOST_CURVED / length, _MOST_CURVED / length, remedy)
+    s = np.linspace(0, 1, _PLACES)[1:]
+    low = Unloaded(found.times(length, 1 / length)).at(s)[1] <= 0
+    if low.any():
+        what = f"such that the vibrissa at rest is back at the foot line at s = {s[low][0]:.3g} L"
+        raise InputError(name, what, "such that it stays above", remedy)
+    return found
+
+
+def _may_vary(given: object) -> bool:
+    return callable(given) or (hasattr(given, "__len__") and not isinstance(given, str | bytes))
 
 
 @dataclass(frozen=True)

@@ -1,34 +1,74 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
+import hashlib
+import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
-from analytic.problem.case_shown import described, draw, ways
-from analytic.problem.clamp_path import ClampWay, Direction, Sweep, TurningWay
+from analytic.problem.beam import Beam, Unloaded
+from analytic.problem.clamp_path import ClampWay, Direction, Pose, Poses, Sweep, TurningWay, along_x
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
-from analytic.problem.digest import digest_of
-from analytic.problem.ends import check_ends, first_contact, sign_of, start_of, stop_of
 from analytic.problem.errors import InputError, require
-from analytic.problem.limits import AnyCase, given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import Pose, Poses, along_x
-from analytic.problem.provenance import recorded_contours
-from analytic.problem.reach import contact_range
+from analytic.problem.reach import (
+    check_ends,
+    contact_range,
+    first_contact,
+    sign_of,
+    start_of,
+    stop_of,
+)
 from analytic.problem.rest import FirstTouch, first_on_way, first_touch
-from analytic.problem.shown import Shown, new_figure
-from analytic.problem.support import Support, check_support, support_record
-from analytic.problem.unloaded import Unloaded
+from analytic.problem.shown import Shown, described, draw, new_figure, ways
+from analytic.problem.support import (
+    AnyCase,
+    Support,
+    check_support,
+    given_contour,
+    recorded_contours,
+    support_record,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_PLACES = 67  # of a contour
+
+
+def digest_of(case: "Case") -> str:
+    """Equal for equal problems, whatever the case is called."""
+    xi, eta = case.centreline.place(np.linspace(*case.reach, _PLACES))
+    beam, foot_x = case.beam, case.foot_x
+    sizes = beam.length, beam.base_rigidity, beam.radius
+    if isinstance(case.sweep, Sweep):
+        ends = [foot_x[0], foot_x[-1], len(foot_x)]
+    else:
+        ends = [value for values in case.stations for value in values.tolist()]
+    numbers = np.array([*sizes, *ends, *xi, *eta])
+    if not case.is_plain:
+        base_curvature = float(beam.curvature_at(0.0))
+        beyond = base_curvature, case.clamp_stiffness, case.friction
+        numbers = np.append(numbers, beyond)
+    if case.clamp_angle or any(case.weight):
+        numbers = np.append(numbers, case.clamp_angle)
+    if any(case.weight):
+        numbers = np.append(numbers, case.weight)
+    for other in case.alone:
+        places = other.centreline.place(np.linspace(*other.reach, _PLACES))
+        numbers = np.append(numbers, places)
+    text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
+    if beam.varies:
+        given = asdict(beam)
+        names = "flexural_rigidity", "tip_radius", "natural_curvature"
+        text += json.dumps([given[name] for name in names])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,7 +121,7 @@ class Case(AnyCase, Shown):
             self._put_in_order()
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
-            ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
+            ("profile", Contour, "as catenary(0.5, -0.8), or a case's profile"),
             (
                 "sweep",
                 ClampWay,
@@ -172,24 +212,6 @@ class Case(AnyCase, Shown):
         along = self.running_values
         return -along / self.beam.length if self.sweep.running == "travel" else -along
 
-    def running_at(self, p: float) -> float:
-        """What the sweep runs over, at a parameter of the way to the left that solves it.
-
-        Parameters
-        ----------
-        p : float
-            The parameter.
-
-        Returns
-        -------
-        float
-            A foot position or a travel [length], or an angle of the clamp [rad].
-        """
-        if self.sweep.running == "travel":
-            return -p * self.beam.length
-        turned = p if self.direction == "left" else -p
-        return turned * self.beam.length if isinstance(self.sweep, Sweep) else -turned
-
     @cached_property
     def running_values(self) -> Floats:
         """Values of what the sweep runs over, shape (stations,)."""
@@ -233,50 +255,6 @@ class Case(AnyCase, Shown):
         highest = float(self.poses.at(self.way).foot_y.max())
         return contact_range(self.centreline.raised(-highest) if highest else self.centreline)
 
-    def between(self, start: float, stop: float, stations: int | None = None) -> "Case":
-        """The same sweep between other positions of the foot.
-
-        Parameters
-        ----------
-        start, stop : float
-            [length].
-        stations : int, optional
-            As many as before if not given.
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-
-        Raises
-        ------
-        InputError
-            If the clamp turns or leaves its line on its way.
-        """
-        sweep = self.require_line("a sweep between other positions of the foot")
-        number = sweep.stations if stations is None else stations
-        return replace(self, sweep=replace(sweep, stations=number, start=start, stop=stop))
-
-    def shifted(self, x: float = 0.0, angle: float = 0.0) -> "Case":
-        """The case over its own stations, whatever else is changed of it then, or beside them.
-
-        Parameters
-        ----------
-        x : float
-            By how much the foot is farther right at each station [length].
-        angle : float
-            By how much the clamp leans more to the left there [rad].
-
-        Returns
-        -------
-        Case
-            With all else as it is.
-        """
-        if not isinstance(self.sweep, Sweep):
-            return replace(self, sweep=self.sweep.shifted(x, angle))
-        start, stop = (float(foot) + x for foot in self.foot_x[[0, -1]])
-        return replace(self.between(start, stop), clamp_angle=self.clamp_angle + angle)
-
     @property
     def radius(self) -> float:
         """The beam's radius, a cone's at the clamp, in units of its length."""
@@ -289,10 +267,8 @@ class Case(AnyCase, Shown):
             return self.stations.foot_x
         return np.linspace(self._start, self._stop, self.sweep.stations)
 
-    @cached_property
-    def digest(self) -> str:
-        """A hash of the physics: equal for equal problems, whatever the case is called."""
-        return digest_of(self)
+    digest = cached_property(digest_of)
+    """A hash of the physics."""
 
     def provenance(self) -> dict[str, Any]:
         """What every engine records of the problem that it solved.
@@ -387,14 +363,6 @@ class Case(AnyCase, Shown):
             "stations": ways(self),
         }
 
-    @cached_property
-    def _first_contact(self) -> float:
-        return first_contact(self)
-
-    @cached_property
-    def _start(self) -> float:
-        return start_of(self, self._first_contact)
-
-    @cached_property
-    def _stop(self) -> float:
-        return stop_of(self)
+    _first_contact = cached_property(first_contact)
+    _start = cached_property(start_of)
+    _stop = cached_property(stop_of)

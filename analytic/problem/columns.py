@@ -35,8 +35,7 @@ SECOND_CONTACT = (
 )
 """What readings have besides where a vibrissa touches in two places, of the one nearer its tip."""
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")
-WORDS = {"phase": PHASES, "status": STATUSES}
-"""The columns of words, with what may stand in them."""
+WORDS = {"phase": PHASES, "status": STATUSES}  # the columns of words, with what may stand in them
 PHASE_NUMBER = {word: number for number, word in enumerate(PHASES)}
 STATUS_NUMBER = {word: number for number, word in enumerate(STATUSES)}
 

@@ -26,42 +26,22 @@ class InputError(ValueError):
     """
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str = "correct it") -> None:
-        self.name, self._given = name, (name, _written(value), allowed, remedy)
-        line = f"{name} = {self._given[1]}: must be {allowed}; {remedy}"
+        self.name, self.given = name, (name, _written(value), allowed, remedy)
+        line = f"{name} = {self.given[1]}: must be {allowed}; {remedy}"
         super().__init__(" ".join(line.split()))
 
-    def called(self, name: str) -> "InputError":
-        """The same of what is known by another name, as a key of a file.
-
-        Parameters
-        ----------
-        name : str
-            That name.
-
-        Returns
-        -------
-        InputError
-            To be raised.
-        """
-        return InputError(name, *self._given[1:])
-
-    def because(self, remedy: str) -> "InputError":
-        """The same with another remedy, where more is known of the cause.
-
-        Parameters
-        ----------
-        remedy : str
-            What to do about it.
-
-        Returns
-        -------
-        InputError
-            To be raised.
-        """
-        return InputError(*self._given[:3], remedy)
-
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
-        return type(self), self._given  # so that another process can hand it back
+        return type(self), self.given  # so that another process can hand it back
+
+
+def called(error: InputError, name: str) -> InputError:
+    """The same of what is known by another name, as a key of a file."""
+    return InputError(name, *error.given[1:])
+
+
+def because(error: InputError, remedy: str) -> InputError:
+    """The same with another remedy, where more is known of the cause."""
+    return InputError(*error.given[:3], remedy)
 
 
 def _written(value: object) -> str:

@@ -10,8 +10,7 @@ from pathlib import Path
 
 from analytic.problem.errors import InputError
 
-SOFTWARE = "vibrissa testbed"
-"""What pictures, films and clouds of points say that they are of."""
+SOFTWARE = "vibrissa testbed"  # what pictures, films and clouds of points say that they are of
 _MARK = b"vibrissa"  # in what is written, but for tables, which begin with a word of their own
 _AFTER_A_WORD = re.compile(rb'[":,\n]')
 _NAMED_BY_A_WORD = (".csv", ".json")

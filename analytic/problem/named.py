@@ -1,7 +1,7 @@
 """The named cases: the paper's contours and two more, and vibrissae beyond the paper's."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -9,8 +9,25 @@ from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep, Whisk
 from analytic.problem.contours.contour import Contour
-from analytic.problem.contours.kinds import CONTOURS
+from analytic.problem.contours.families import catenary, circle, ellipse, parabola, two_circles
+from analytic.problem.contours.mesh_section import mesh_section
+from analytic.problem.contours.polygon import polygon
+from analytic.problem.contours.through_points import through_points
 from analytic.problem.errors import unknown
+
+CONTOURS: Mapping[str, Callable[..., Contour]] = MappingProxyType(
+    {
+        "catenary": catenary,
+        "parabola": parabola,
+        "circle": circle,
+        "ellipse": ellipse,
+        "two-circles": two_circles,
+        "polygon": polygon,
+        "points": through_points,
+        "mesh": mesh_section,
+    }
+)
+"""Factories of contours by kind."""
 
 NAMED_PROFILES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
@@ -95,8 +112,7 @@ def named_case(name: str) -> Case:
         If there is no case of that name.
     """
     if name not in NAMED_TABLES:
-        more, remedy = ", or a TOML file", "see `vibrissa list cases`"
-        raise unknown("case", name, NAMED_TABLES, more=more, remedy=remedy)
+        raise unknown("case", name, NAMED_TABLES, remedy="`compare.load_case` reads a TOML file")
     tables = NAMED_TABLES[name]
     return Case(
         Beam(**tables.get("beam", {})),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from analytic.problem.along import Along
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import TurningWay
+from analytic.problem.reach import shifted
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def _softer(case: Case, by: float) -> Case:
 
 def _leaning(case: Case, by: float) -> Case:
     if isinstance(case.sweep, TurningWay):
-        return case.shifted(angle=by)
+        return shifted(case, angle=by)
     return replace(case, clamp_angle=case.clamp_angle + by)
 
 
@@ -111,7 +112,7 @@ QUANTITIES: dict[str, Quantity] = {
         positive=True,
     ),
     "clamp_angle": Quantity("rad", lambda case: case.clamp_angle, lambda case: 1.0, _leaning),
-    "foot_x": Quantity("m", lambda case: 0.0, _length, Case.shifted),
+    "foot_x": Quantity("m", lambda case: 0.0, _length, shifted),
     "height": Quantity(
         "m",
         lambda case: 0.0,

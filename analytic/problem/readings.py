@@ -14,9 +14,14 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SCHEMA, SENSED
 from analytic.problem.errors import InputError, Place, near, require, row_number
 from analytic.problem.files import as_path
-from analytic.problem.limits import OfVibrissa
-from analytic.problem.provenance import check_provenance, recorded_contours
-from analytic.problem.support import Support, support_of, support_record
+from analytic.problem.support import (
+    OfVibrissa,
+    Support,
+    check_provenance,
+    recorded_contours,
+    support_of,
+    support_record,
+)
 from analytic.problem.sweep_table import SweepTable, usable
 
 if TYPE_CHECKING:
@@ -88,7 +93,7 @@ class Readings(OfVibrissa, SweepTable):
                 remedy = near(name, known, "its columns are in table")
                 remedy = f"take table[{name!r}]" if name in SCHEMA else remedy
                 raise AttributeError(f"{type(self).__name__} has no {name!r}; {remedy}")
-            return made[name]
+            return object.__getattribute__(self, name)
 
     def __getstate__(self) -> dict[str, Any]:
         """What copies and pickles have: of readings with a table still to be made, that table."""

@@ -1,11 +1,14 @@
-"""A sweep's rows as they come, and the readings that they are, also if it ends early."""
+"""A sweep's rows as they come, and the readings that they are, also if it ends early.
+
+Sweeps to the right are recorded as mirror images of sweeps to the left.
+"""
 
 import platform
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -15,13 +18,32 @@ from threadpoolctl import threadpool_limits
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Sweep
 from analytic.problem.columns import COLUMNS, WORDS, units
-from analytic.problem.errors import unknown
+from analytic.problem.errors import require, unknown
 from analytic.problem.readings import Readings, are_finite, solved_readings
 
-DIVERGED = {"phase": "free", "status": "diverged"}
-"""The row of a station without numbers."""
+DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
 Kept = TypeVar("Kept")
+
+
+def leftward(case: Case) -> Case:
+    """A case whose clamp goes to the left: itself, or its mirror image."""
+    require("case", case, Case, "named_case('catenary') makes one")
+    return case if case.direction == "left" else case.mirrored()
+
+
+def keep_facing(case: Case, keep: Callable[[Readings], None]) -> Callable[[Readings], None]:
+    """What takes readings of the sweep to the left, and keeps them as those of a case."""
+    return lambda found: keep(facing(case, found))
+
+
+def facing(case: Case, found: Readings) -> Readings:
+    """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
+    if case.direction == "left":
+        return found
+    mirrored = found.mirrored()
+    return replace(mirrored, provenance={**mirrored.provenance, **case.provenance()})
 
 
 class Swept(Protocol):
@@ -92,6 +114,14 @@ class AnyRecorder(ABC, Generic[Kept]):
         return columns
 
 
+def running_values(case: Case, events: Mapping[str, float | None]) -> dict[str, float | None]:
+    """What a case's sweep runs over, by parameters of the way to the left that solves it."""
+    size = case.beam.length if isinstance(case.sweep, Sweep) else -1.0
+    unit = size if case.direction == "left" else -size
+    unit = -case.beam.length if case.sweep.running == "travel" else unit
+    return {name: None if p is None else unit * p for name, p in events.items()}
+
+
 @dataclass
 class Recorder(AnyRecorder[Readings]):
     """Of a sweep in the plane to the left; its events are parameters of the way by name."""
@@ -108,10 +138,7 @@ class Recorder(AnyRecorder[Readings]):
         columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
         for name in WORDS:
             columns[name] = np.array([_number(name, word) for word in columns[name]])
-        events = {
-            name: None if p is None else self.case.running_at(p)
-            for name, p in self.events().items()
-        }
+        events = running_values(self.case, self.events())
         beam, provenance, finite = self.case.beam, self._provenance(events), are_finite(columns)
         return solved_readings(
             columns, beam, self.source, lambda: provenance, events["snap_off"], finite

@@ -8,10 +8,10 @@ import numpy as np
 from analytic.numerics.roots import zero, zeros
 from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.beam import Unloaded
+from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.poses import Pose, Poses
-from analytic.problem.unloaded import Unloaded
 
 _SAMPLES = 513  # of the contour, between which its distance from the vibrissa has one minimum
 _ROUNDING = 1e-14  # rad, of the slope of an upright side

@@ -2,15 +2,20 @@
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from analytic.problem.beam import Beam
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from analytic.problem.case import Case
 
 _TILES = "display:flex;flex-wrap:wrap;gap:6px;margin:4px 0"
 _TILE = "border:1px solid #8888;border-radius:6px;padding:2px 10px"
@@ -70,6 +75,31 @@ def stacked(labels: Iterable[str], below: str, figure: "Figure | None" = None) -
 
 
 def with_unit(name: str, beam: Beam) -> str:
-    """A column's name as axes say it."""
     units = [unit for start, unit in _SI.items() if name.startswith(start)]
     return f"{name} [{units[0]}]" if beam.si else name
+
+
+def described(beam: Beam) -> str:
+    return f"length {beam.length:g}, EI {beam.base_rigidity:g}, radius {beam.radius:g}"
+
+
+def draw(case: "Case", ax: "Axes") -> None:
+    for one in (case, *case.alone):
+        xi, eta = one.outline()
+        ax.fill_between(xi, eta, eta.max(), color="#dddddd", linewidth=0)
+        ax.plot(xi, eta, color="#555555", linewidth=2.5, label=one.profile.label)
+    feet, s = case.stations, np.linspace(0, 1, 33)
+    ax.plot(feet.foot_x, feet.foot_y, color="#999999", linewidth=0.8)
+    for station, said, colour in ((0, "start", "#0072b2"), (-1, "end", "#d55e00")):
+        foot_x, foot_y, angle = (part[station] for part in feet)
+        x, y, _ = replace(case.unloaded, angle=float(angle)).at(s) * np.array(case.beam.length)
+        ax.plot(foot_x + x, foot_y + y, color=colour, label=f"unloaded, at the {said}")
+        ax.plot(foot_x, foot_y, "s", color=colour, markersize=4)
+    ax.set(xlabel="x [m]" if case.beam.si else "x", ylabel="y [m]" if case.beam.si else "y")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.legend(fontsize="small")
+
+
+def ways(case: "Case") -> str:
+    along = case.running_values
+    return f"{len(along)}, {case.sweep.running} from {along[0]:.4g} to {along[-1]:.4g}"

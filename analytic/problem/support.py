@@ -1,17 +1,17 @@
-"""How the vibrissa is held and how the object rubs: checks, and who cannot do with what."""
+"""How the vibrissa is held, how the object rubs, what is recorded of it, and who refuses what."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 from analytic.problem.along import Along
-from analytic.problem.beam import Beam, Varying
-from analytic.problem.errors import InputError
-from analytic.problem.hanging import AtRest, at_rest
-from analytic.problem.numbers import within
-from analytic.problem.rod import RodProperties
-from analytic.problem.unloaded import Unloaded
+from analytic.problem.beam import Beam, Unloaded, Varying
+from analytic.problem.clamp_path import ClampWay, Sweep
+from analytic.problem.contours.contour import Contour
+from analytic.problem.errors import InputError, require
+from analytic.problem.numbers import floats, within
+from analytic.problem.rod import AtRest, RodProperties, at_rest
 
 _MOST_FRICTION = 1.0
 _SOFTEST = 0.01  # EI/L, of the clamp
@@ -54,11 +54,9 @@ class Support(NamedTuple):
         return at_rest(rod, beam.moment_unit / self.clamp_stiffness)
 
 
-UPRIGHT = Support()
-"""The paper's clamp, no friction and no weight."""
+UPRIGHT = Support()  # the paper's clamp, no friction and no weight
 _WEIGHT = ("weight_x", "weight_y")
-RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}
-"""Names of what provenance says of all that."""
+RECORDED = {*Support._fields, *_WEIGHT} - {"weight"}  # names of what provenance says of all that
 
 
 def check_support(held: Support, beam: Beam, signed: bool = False) -> None:
@@ -113,13 +111,7 @@ def require_weightless(who: str, held: Support) -> None:
 
 def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
     require_uniform(who, beam)
-    require_weightless(who, held)
-    for name, value, plain in (
-        ("beam.natural_curvature", beam.natural_curvature, 0.0),
-        ("clamp_stiffness", held.clamp_stiffness, math.inf),
-        ("friction", held.friction, 0.0),
-        ("clamp_angle", held.clamp_angle, 0.0),
-    ):
+    for name, (value, plain) in _numbers(beam, held).items():
         refuse(who, name, value, plain)
 
 
@@ -130,22 +122,25 @@ def refuse(who: str, name: str, value: object, plain: float) -> None:
 
 
 def beyond_the_paper(beam: Beam, held: Support) -> dict[str, Varying]:
-    """What of a vibrissa, its clamp and its contact is not the paper's."""
+    """What of a vibrissa, its clamp and its contact is not the paper's, by what it is."""
+    found = {name: value for name, (value, plain) in _numbers(beam, held).items() if value != plain}
+    return {name.removeprefix("beam.").replace("_", " "): value for name, value in found.items()}
+
+
+def _numbers(beam: Beam, held: Support) -> dict[str, tuple[Varying, float]]:
+    """What may not be the paper's, by name, and what is that."""
     tip_radius = beam.radius if beam.tip_radius is None else beam.tip_radius
-    numbers: tuple[tuple[str, Varying, float], ...] = (
-        ("tip radius", tip_radius, beam.radius),
-        ("natural curvature", beam.natural_curvature, 0.0),
-        ("clamp stiffness", held.clamp_stiffness, math.inf),
-        ("friction", held.friction, 0.0),
-        ("clamp angle", held.clamp_angle, 0.0),
-        ("weight along x", held.weight[0], 0.0),
-        ("weight along y", held.weight[1], 0.0),
-    )
-    return {name: value for name, value, plain in numbers if value != plain}
+    return {
+        "beam.tip_radius": (tip_radius, beam.radius),
+        "beam.natural_curvature": (beam.natural_curvature, 0.0),
+        "clamp_stiffness": (held.clamp_stiffness, math.inf),
+        "friction": (held.friction, 0.0),
+        "clamp_angle": (held.clamp_angle, 0.0),
+        **{name: (w, 0.0) for name, w in zip(_WEIGHT, held.weight, strict=True)},
+    }
 
 
 def support_record(held: Support) -> dict[str, Any]:
-    """What provenance says of the clamp and the contact."""
     if held.is_plain:
         return {}
     stiffness = held.clamp_stiffness if held.clamp_stiffness < math.inf else None
@@ -160,3 +155,92 @@ def support_of(provenance: Mapping[str, Any]) -> Support:
     friction, angle = (float(held.get(name) or 0.0) for name in ("friction", "clamp_angle"))
     w_x, w_y = (float(held.get(name) or 0.0) for name in _WEIGHT)
     return Support(stiffness, friction, angle, (w_x, w_y))
+
+
+def given_contour(profile: Contour, beam: Beam) -> Contour:
+    """What the centreline feels, a cone's at its tip, in units of the vibrissa's length."""
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or a case's profile")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+    return profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
+
+
+class OfVibrissa:
+    """What is of a vibrissa in a clamp: a case, or its readings."""
+
+    beam: Beam
+
+    @property
+    def support(self) -> Support:
+        raise NotImplementedError
+
+    @property
+    def beyond_the_paper(self) -> dict[str, Varying]:
+        return beyond_the_paper(self.beam, self.support)
+
+    def require_sweep(self, who: str) -> object:
+        """Refuse a clamp that turns or leaves its line on its way, for who cannot do with that."""
+        raise NotImplementedError
+
+    def require_plain(self, who: str) -> None:
+        """Refuse what is not of the paper's vibrissa, for who can take nothing else."""
+        require_plain(who, self.beam, self.support)
+        self.require_sweep(who)
+
+
+class AnyCase(OfVibrissa):
+    sweep: ClampWay
+    others: tuple[Contour, ...]
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether vibrissa and object are the paper's: straight, uniform, upright, one contour."""
+        one = not self.others and isinstance(self.sweep, Sweep)
+        return one and is_plain(self.beam, self.support)
+
+    def require_upright(self, who: str) -> None:
+        """Refuse a clamp that leans, turns or leaves its line, and a weight."""
+        self.require_sweep(who)
+        require_weightless(who, self.support)
+        refuse(who, "clamp_angle", self.support.clamp_angle, 0.0)
+
+    def require_sweep(self, who: str) -> Sweep:
+        """Refuse several objects, and a clamp that turns or leaves its line on its way."""
+        self.require_one_object(who)
+        return self.require_line(who)
+
+    def require_one_object(self, who: str) -> None:
+        if self.others:
+            allowed = f"1: {who} can take no more"
+            remedy = "solve it in closed form (exact), sweep MuJoCo in motion, or sweep past one"
+            raise InputError("number of objects", 1 + len(self.others), allowed, remedy)
+
+    def require_line(self, who: str) -> Sweep:
+        """Refuse a clamp that turns or leaves its line on its way."""
+        if not isinstance(self.sweep, Sweep):
+            what = "of a clamp that turns" if self.sweep.running == "clamp_angle" else "of any path"
+            allowed = f"a Sweep, with the foot along its line: {who} can do no other"
+            remedy = "take the closed form or MuJoCo"
+            raise InputError("way of the clamp", what, allowed, remedy)
+        return self.sweep
+
+
+def check_provenance(provenance: Mapping[str, Any]) -> None:
+    for name, known in (("events", None), ("support", RECORDED)):
+        value = provenance.get(name, {})
+        fits = isinstance(value, Mapping) and (known is None or set(value) <= known)
+        if not fits or not all(_is_number(x) for x in value.values()):
+            allowed = "numbers or null by name"
+            raise InputError(f"provenance.{name}", f"{value!r}"[:80], allowed, "drop it")
+    contour, others = provenance.get("contour", [[], []]), provenance.get("others", [])
+    for one in (contour, *(others if isinstance(others, list) else [others])):
+        floats("provenance.contour", one, (2, None), "two lists of as many coordinates")
+
+
+def recorded_contours(contours: Sequence[Any]) -> dict[str, Any]:
+    """What the provenance says of the contours of objects, the first one and others."""
+    named = {"contour": contours[0]} if contours else {}
+    return named | ({"others": [*contours[1:]]} if contours[1:] else {})
+
+
+def _is_number(value: object) -> bool:
+    return value is None or (isinstance(value, int | float) and not isinstance(value, bool))

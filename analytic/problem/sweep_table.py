@@ -33,10 +33,29 @@ def usable(path: Path) -> Iterator[None]:
         raise InputError(f"readings file {path}", "unusable", "one sweep", str(error)) from error
 
 
+class _Table:
+    """Whoever asks for the table gets one of their own, whose columns are copied as they write.
+
+    Else a fault planted in ``df = exact.table`` was in `exact`, too, which then agreed with it.
+    """
+
+    def __get__(self, readings: "SweepTable | None", kind: type) -> "pd.DataFrame":
+        if readings is None or "table" not in readings.__dict__:
+            raise AttributeError("table")
+        table: pd.DataFrame = readings.__dict__["table"]
+        return table.copy(deep=False)
+
+    def __set__(self, readings: "SweepTable", table: "pd.DataFrame") -> None:
+        readings.__dict__["table"] = table
+
+
 class SweepTable(Shown):
     """A row a station, in the units of a beam."""
 
-    table: "pd.DataFrame"
+    if TYPE_CHECKING:
+        table: pd.DataFrame
+    else:
+        table = _Table()
     beam: Beam
     source: str
     provenance: Mapping[str, Any]
@@ -46,8 +65,9 @@ class SweepTable(Shown):
     def _check_kinds(self) -> None:
         import pandas as pd  # slow to load, and solvers do without
 
+        given = self.__dict__["table"]  # whatever it is
         for name, value, kind, remedy in (
-            ("table", self.table, pd.DataFrame, "columns by name; `of` takes mappings too"),
+            ("table", given, pd.DataFrame, "columns by name; `of` takes mappings too"),
             ("beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)"),
             ("source", self.source, str, "it says who produced them"),
             ("provenance", self.provenance, Mapping, "as {'engine': '...'}"),
@@ -73,13 +93,13 @@ class SweepTable(Shown):
         InputError
             If readings have no such column, whatever is measured.
         """
+        table = self.table
         for name in columns:
-            if name not in self.table and name not in SCHEMA:
-                raise unknown("column of readings", name, [*self.table])
-        missing = np.full(len(self.table), np.nan)
+            if name not in table and name not in SCHEMA:
+                raise unknown("column of readings", name, [*table])
+        missing = np.full(len(table), np.nan)
         found = [
-            self.table[name].to_numpy(dtype=float) if name in self.table else missing
-            for name in columns
+            table[name].to_numpy(dtype=float) if name in table else missing for name in columns
         ]
         return found[0] if len(found) == 1 else np.column_stack(found)
 

@@ -40,7 +40,6 @@ class Branch:
 
     @property
     def foot_x(self) -> Floats:
-        """Foot positions at the parameters [L]."""
         return self.samples.foot_x
 
     def events(self) -> dict[str, int | None]:
@@ -82,8 +81,7 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
     ]
 
 
-_Part: TypeAlias = tuple[Floats, Samples]
-"""Contour parameters and states along a branch."""
+_Part: TypeAlias = tuple[Floats, Samples]  # contour parameters and states along a branch
 
 
 def _to_snap_off(t: Floats, samples: Samples) -> _Part:

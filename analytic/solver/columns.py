@@ -1,12 +1,18 @@
-"""The readings of vibrissae at rest, column by column; phase and status by their numbers."""
+"""The readings of vibrissae at rest, column by column, and what is recorded of their sweep.
 
-from collections.abc import Sequence
+Phase and status are by their numbers.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache, partial
+from importlib.metadata import version
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.case import Case
 from analytic.problem.columns import (
     CLAMP_READINGS,
     COLUMNS,
@@ -16,12 +22,17 @@ from analytic.problem.columns import (
     STATUS_NUMBER,
 )
 from analytic.problem.contours.contour import ContourPoint
+from analytic.problem.readings import Readings, solved_readings
+from analytic.problem.recorder import running_values
 from analytic.solver.general.states import States, Vibrissa
 
 Numbers: TypeAlias = Floats | Integers
 ReadingColumns: TypeAlias = dict[str, Numbers]
 READINGS = (*CLAMP_READINGS, "foot_x", "contact_arc_length", "tip_angle")
 """What a state that is none does not have."""
+
+Points = Mapping[str, float | None]
+"""Parameters of the clamp's way of what happens, by name; foot positions [L] of a sweep."""
 
 
 class Units(NamedTuple):
@@ -118,3 +129,23 @@ def without(columns: ReadingColumns, which: Booleans, status: str) -> ReadingCol
     found = {**columns, "status": np.where(which, STATUS_NUMBER[status], columns["status"])}
     nowhere = (*READINGS, *(name for name in SECOND_CONTACT if name in columns))
     return found | {name: np.where(which, np.nan, columns[name]) for name in nowhere}
+
+
+def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: bool) -> Readings:
+    """The readings of a case whose sweep to the left, or its mirror image's, is solved."""
+    if case.direction == "right":
+        from analytic.problem.table import mirrored_columns  # slow to load, and few sweeps need it
+
+        columns = mirrored_columns(columns)
+    places = running_values(case, events)
+    record = partial(_provenance, case, places)
+    return solved_readings(columns, case.beam, "analytic", record, places["snap_off"], finite)
+
+
+def _provenance(case: Case, events: Points) -> dict[str, object]:
+    return {**case.provenance(), "engine": engine(), "events": dict(events)}
+
+
+@cache
+def engine() -> str:
+    return f"vibrissa-testbed {version('vibrissa-testbed')}"

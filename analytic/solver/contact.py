@@ -11,15 +11,14 @@ from analytic.numerics.batches import take
 from analytic.numerics.newton import solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.limits import given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.support import Support, check_support
+from analytic.problem.support import Support, check_support, given_contour
 from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns, without
 from analytic.solver.equilibria import equilibria
@@ -85,7 +84,7 @@ def solve_contact(
     held = Support(clamp_stiffness, friction, clamp_angle, pair("weight", weight))
     check_support(held, beam, signed=True)
     try:
-        angles = np.atleast_1d(np.asarray(alpha, dtype=float))
+        angles = np.atleast_1d(np.asarray(alpha, dtype=float)).ravel()
     except (TypeError, ValueError) as error:
         raise InputError("alpha", repr(alpha)[:80], "numbers", "angles are in rad") from error
     outside = ~(np.abs(angles) <= np.pi / 2)

@@ -10,16 +10,15 @@ import numpy as np
 from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
-from analytic.problem.limits import given_contour
 from analytic.problem.numbers import pair
-from analytic.problem.poses import along_x
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.shown import Shown, stacked
-from analytic.problem.support import Support, check_support, is_plain, require_plain
+from analytic.problem.support import Support, check_support, given_contour, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.equilibria import Equilibria, equilibria_at, surplus_and_rate, tangent_contact

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import COLUMNS, CONTACT, PHASE_NUMBER
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import facing, leftward
-from analytic.problem.poses import along_x
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import facing, leftward
 from analytic.problem.table import as_table, says
 from analytic.solver.columns import Units, to_columns, unloaded_columns, without
 from analytic.solver.general.states import INSIDE, Vibrissa, states_at

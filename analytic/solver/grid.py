@@ -20,8 +20,7 @@ from analytic.numerics.roots import Surroundings, smooth_zeros, zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.contours.many import Contours
-from analytic.solver.equilibria import equilibria_at, surplus_and_rate
-from analytic.solver.tip import within_reach
+from analytic.solver.equilibria import equilibria_at, surplus_and_rate, within_reach
 
 # Samples of the whole contour to begin with, as shares of the way along it. They are dense at both
 # ends: x0 starts like a square root at first contact and folds before the last.

@@ -16,8 +16,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
 from analytic.solver.columns import Numbers, ReadingColumns, Units, without
 from analytic.solver.elastica import span_of_moment
-from analytic.solver.general.march import march
-from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general.span import back_to_clamp, march
 from analytic.solver.general.states import Vibrissa
 
 _ROUNDING = 1e-13  # of the weight; of the moment of one that touches nothing

@@ -24,9 +24,8 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.limits import given_contour
 from analytic.problem.reach import contact_range
-from analytic.problem.support import require_plain
+from analytic.problem.support import given_contour, require_plain
 from analytic.solver.elastica import Span, frame, span
 
 _GRID = 801  # contour points to find the fold between; it is then exact

@@ -18,16 +18,8 @@ def jumps(x: Floats, relative: Floats, starts: Integers) -> Integers:
 
     Else they rise from a station to the next as they do on one side, but for what this changes by.
     The largest are found first: what is beside one goes on from its own side alone. A bend between
-    two stations, where a contact comes to a corner, is found as well if it is as large.
-
-    Parameters
-    ----------
-    x : array, shape (n,)
-        Places along the sweep.
-    relative : array, shape (k, n)
-        Readings over their largest magnitudes.
-    starts : array of int
-        Where stretches of one phase begin.
+    two stations, where a contact comes to a corner, is found as well if it is as large. Readings,
+    shape (k, n), are over their largest magnitudes; stretches of one phase begin at `starts`.
     """
     step = np.diff(x)
     whole = step != 0  # places may be repeated

@@ -11,7 +11,7 @@ from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, MEDIAN_OF_NORMAL, known_to
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import require
-from analytic.problem.provenance import recorded_contours
+from analytic.problem.support import recorded_contours
 from compare.align.jumps import jumps
 from compare.align.stations import interpolant
 from compare.sense.noise import scales

@@ -47,7 +47,6 @@ class Alignment:
     counts: dict[str, int]
 
     def __repr__(self) -> str:
-        """How many stations are compared, and how many are not."""
         counted = ", ".join(f"{n} {reason}" for reason, n in self.counts.items() if n)
         return f"Alignment({counted})"
 
@@ -71,12 +70,9 @@ def align(
     x, x_ref = candidate.running_values, reference.running_values
     outside = (x < x_ref.min() - _SAME_STATION * size) | (x > x_ref.max() + _SAME_STATION * size)
     if outside.all():
-        raise InputError(
-            f"{reference.running} of the two readings",
-            f"{x_ref.min():.6g}..{x_ref.max():.6g} and {x.min():.6g}..{x.max():.6g}",
-            "overlapping",
-            f"sweep a common stretch, or check units and origin of {reference.running}",
-        )
+        what = f"{x_ref.min():.6g}..{x_ref.max():.6g} and {x.min():.6g}..{x.max():.6g}"
+        remedy = f"sweep a common stretch, or check units and origin of {reference.running}"
+        raise InputError(f"{reference.running} of the two readings", what, "overlapping", remedy)
     order = np.argsort(x_ref)
     between = (x_ref[order][1:] + x_ref[order][:-1]) / 2
     nearest = order[np.searchsorted(between, x, side="right")]
@@ -155,24 +151,18 @@ def check_same_beam(
     one, other = reference.beam, candidate.beam
     sizes, others = ((beam.length, beam.base_rigidity) for beam in (one, other))
     if not np.allclose(sizes, others, rtol=1e-9, atol=0):
-        raise InputError(
-            "vibrissae of the two sweeps",
-            f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}",
-            "the same, in the same units",
-            "state the one that was measured: --beam FILE, as the case's own",
-        )
+        what = f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}"
+        remedy = "state the one that was measured: --beam FILE, as the case's own"
+        raise InputError("vibrissae of the two sweeps", what, "the same, in the same units", remedy)
 
 
 def check_same_way(reference: Readings, candidate: Readings) -> None:
     """Refuse sweeps of two vibrissae, or of clamps that turn or leave their line on two ways."""
     check_same_beam(reference, candidate)
     if reference.running != candidate.running:
-        raise InputError(
-            "ways of the two clamps",
-            f"over {reference.running} and over {candidate.running}",
-            "one and the same",
-            "sweep both along one way; measured readings need its columns, as clamp_angle",
-        )
+        what = f"over {reference.running} and over {candidate.running}"
+        remedy = "sweep both along one way; measured readings need its columns, as clamp_angle"
+        raise InputError("ways of the two clamps", what, "one and the same", remedy)
     if reference.running == "foot_x":
         return
     order, at = np.argsort(reference.running_values), candidate.running_values
@@ -185,12 +175,10 @@ def check_same_way(reference: Readings, candidate: Readings) -> None:
     ):
         off = np.abs(np.interp(at, x, ours[order]) - theirs)[within].max(initial=0.0) / size
         if off > _SAME_POSE:
-            raise InputError(
-                f"{name} of {candidate.source}",
-                f"up to {off:.2g} away from that of {reference.source}",
-                f"the same at the same {reference.running}, to {_SAME_POSE:g} L or rad",
-                "sweep both along one way, at the same stations if it is curved",
-            )
+            what = f"up to {off:.2g} away from that of {reference.source}"
+            allowed = f"the same at the same {reference.running}, to {_SAME_POSE:g} L or rad"
+            remedy = "sweep both along one way, at the same stations if it is curved"
+            raise InputError(f"{name} of {candidate.source}", what, allowed, remedy)
 
 
 def _leapt(reference: Readings, candidate: Readings, nearest: Integers) -> Booleans:
@@ -287,9 +275,7 @@ def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) 
     feet = reference.values(*FOOT), candidate.values(*FOOT)
     length = reference.beam.length
     if feet[0].shape != feet[1].shape or np.abs(feet[0] - feet[1]).max() >= _SAME_POSE * length:
-        raise InputError(
-            f"stations of {candidate.source}",
-            f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}",
-            f"the same foot positions, to {_SAME_POSE:g} L",
-            "sweep both along one [path]",
-        )
+        what = f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}"
+        allowed = f"the same foot positions, to {_SAME_POSE:g} L"
+        remedy = "sweep both along one [path]"
+        raise InputError(f"stations of {candidate.source}", what, allowed, remedy)

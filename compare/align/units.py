@@ -41,7 +41,8 @@ def check_unit_of_length(
     Where the foot travels much more or much less than the reference's, its positions are tried in
     the units of length that make it travel as far.
     """
-    spans = [_travel(sweep) for sweep in (reference, candidate)]
+    loaded = [sweep.running_values[_loaded(sweep)] for sweep in (reference, candidate)]
+    spans = [float(np.ptp(x)) if len(x) else 0.0 for x in loaded]
     if not min(spans) > 0 or max(spans) <= _SUSPICIOUS * min(spans):
         return
     ratio = spans[1] / spans[0]
@@ -66,12 +67,6 @@ def _magnitudes(readings: Readings) -> Floats:
     loaded = _loaded(readings)
     values = np.abs([readings.values(name)[loaded] for name in CLAMP_READINGS])
     return np.quantile(values, _LARGE, axis=1) if values.shape[1] else np.zeros(len(values))
-
-
-def _travel(readings: Readings) -> float:
-    """How far the foot travels under load [length]."""
-    x = readings.running_values[_loaded(readings)]
-    return float(np.ptp(x)) if len(x) else 0.0
 
 
 def _loaded(readings: Readings) -> Booleans:

@@ -29,7 +29,6 @@ class Measured:
     runs: Mapping[str, Readings] = field(default_factory=dict)  # that are kept
 
     def write(self, folder: Path) -> None:
-        """Write what the report does not."""
         for name, readings in self.runs.items():
             readings.write(folder / f"{name}.parquet")
         for name, content in self.contents.items():
@@ -37,7 +36,6 @@ class Measured:
 
 
 def budget_of(job: AnyJob) -> tuple[Any, Mapping[str, Any]]:
-    """The budget of a job, and the sweeps that it is from."""
     measure: Callable[..., tuple[Any, Mapping[str, Any]]] = measure_budget
     with terminal.progress("sweeps of the budget") as advance:
         return measure(job.case, job.settings, advance, motion=job.motion, model=job.model)
@@ -51,8 +49,13 @@ def measured(job: AnyJob, target: float | None) -> Measured:
     if isinstance(job, Job) and job.motion is not None:
         content = found.to_dict()
         if target is not None:
-            content["fastest"] = fastest = _fastest(job, runs, target)
-            terminal.show(*map(Text, _quickest(fastest)))
+            content["fastest"] = one = _fastest(job, runs, target)
+            terminal.print_line(
+                f"Fastest for {target:g}: {one.speed:.3g} L/T1, {one.error:.1e} rms, "
+                f"{one.seconds:.1f} s; {one.at_rest:.1e} is left at rest."
+            )
+            tried = (f"{v:.3g}: {error:.1e}" for v, error in one.tried.items())
+            terminal.print_line(f"  {', '.join(tried)}")
         return Measured(base, contents={"motion-budget.json": content}, runs=runs)
     if target is None or not isinstance(job, Job):
         return Measured(base, found)
@@ -76,17 +79,7 @@ def _fastest(job: Job, runs: Mapping[str, Readings], target: float) -> Fastest:
     return find_fastest(job.solve(), runs, move, target)
 
 
-def _quickest(found: Fastest) -> list[str]:
-    tried = ", ".join(f"{v:.3g}: {error:.1e}" for v, error in found.tried.items())
-    return [
-        f"Fastest for {found.target:g}: {found.speed:.3g} L/T1, {found.error:.1e} rms, "
-        f"{found.seconds:.1f} s; {found.at_rest:.1e} is left at rest.",
-        f"  {tried}",
-    ]
-
-
 def _advised(advice: Followed) -> list[str]:
-    """The advised settings, with what was predicted and measured of them."""
     settings, took = advice.settings, 1e3 * advice.seconds_a_station
     mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
     said = [

@@ -5,20 +5,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.options import (
-    A_RIG,
-    CaseName,
-    Columns,
-    For,
-    Way,
-    from_rigs,
-    number_or_auto,
-    option,
-    out_folder,
-    pass_files,
-    require_use,
-    words,
-)
+from compare.commands import options as opt
 from compare.commands.output import check_own, distinct_name, output_folder, waiting
 
 KNOWN = "a sweep past a known object"
@@ -33,21 +20,21 @@ def calibrate(
             help="Passes past a known object, Parquet or CSV, or a folder that `rig` wrote.",
         ),
     ],
-    case: CaseName,
+    case: opt.CaseName,
     fit: Annotated[
         str,
-        option(
+        opt.option(
             "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, "
             "tip_radius, friction, offset (of foot_x), lag (of the readings behind it).",
             "A,B,...",
         ),
     ] = "flexural_rigidity",
-    out: Annotated[Path | None, out_folder("results/FILE-calibrated")] = None,
-    column: Columns = None,
-    direction: Annotated[Way, For((KNOWN,), (A_RIG,))] = None,
+    out: Annotated[Path | None, opt.out_folder("results/FILE-calibrated")] = None,
+    column: opt.Columns = None,
+    direction: Annotated[opt.Way, opt.For((KNOWN,), (opt.A_RIG,))] = None,
     noise: Annotated[
         str,
-        option(
+        opt.option(
             "Of the clamp readings over their largest magnitude, as 0.01; auto: what they show.",
             "NUMBER|auto",
         ),
@@ -59,9 +46,9 @@ def calibrate(
     are pooled. What is found becomes a case, too, DIR/case.toml. Exit code 1: the fit leaves more
     than the noise, or passes do not say the same.
     """
-    level = number_or_auto("--noise", noise)
-    first, files = files[0], pass_files(files)
-    require_use(context, KNOWN, *([A_RIG] if from_rigs(files) or column else []))
+    level = opt.number_or_auto("--noise", noise)
+    first, files = files[0], opt.pass_files(files)
+    opt.require_use(context, KNOWN, *([opt.A_RIG] if opt.from_rigs(files) or column else []))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from analytic.from_clamp.calibration.calibrate import doubt_of_case
@@ -79,7 +66,7 @@ def calibrate(
     passes = [without_dropouts(one) for one in rig.read_all(files, known.beam)]
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(passes, level)
-        found = calibrate_case(passes, known, words(fit), sizes)
+        found = calibrate_case(passes, known, opt.words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(first)}-calibrated") as folder:
         check_own(folder / "case.toml", CASE_MARK)
         for one in passes:

@@ -3,33 +3,17 @@
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
-from compare.commands.options import (
-    A_RIG,
-    BeamFile,
-    Columns,
-    For,
-    InFrame,
-    Way,
-    are_passes,
-    no_rigs,
-    number_or_auto,
-    option,
-    out_folder,
-    pass_files,
-    require_use,
-)
+from compare.commands import options as opt
 from compare.commands.output import distinct_name, waiting
 from compare.read.case import load_case
+from compare.read.job import AnyJob
 from compare.read.kinds import SPACE, TABLES
-
-if TYPE_CHECKING:
-    from compare.read.job import AnyJob
 
 ONE, SEVERAL = "two sweeps in the plane", "several candidates in the plane"
 _STORED = "a reference that is a file"
@@ -48,49 +32,53 @@ def compare(
         ),
     ],
     out: Annotated[
-        Path | None, out_folder("results/REFERENCE-CANDIDATE, of several results/side-by-side")
+        Path | None, opt.out_folder("results/REFERENCE-CANDIDATE, of several results/side-by-side")
     ] = None,
-    column: Annotated[Columns, For((ONE, SPACE)), For((SEVERAL,), (A_RIG,))] = None,
-    beam: Annotated[BeamFile, For((ONE,)), For((SEVERAL,), (A_RIG,))] = None,
+    column: Annotated[opt.Columns, opt.For((ONE, SPACE)), opt.For((SEVERAL,), (opt.A_RIG,))] = None,
+    beam: Annotated[opt.BeamFile, opt.For((ONE,)), opt.For((SEVERAL,), (opt.A_RIG,))] = None,
     reference_column: Annotated[
         list[str] | None,
-        option("As --column, for the reference.", "NAME=COLUMN[:UNIT]"),
-        For((ONE,), (_STORED,)),
+        opt.option("As --column, for the reference.", "NAME=COLUMN[:UNIT]"),
+        opt.For((ONE,), (_STORED,)),
     ] = None,
     reference_beam: Annotated[
-        Path | None, option("As --beam, for the reference.", "FILE"), For((ONE,), (_STORED,))
+        Path | None,
+        opt.option("As --beam, for the reference.", "FILE"),
+        opt.For((ONE,), (_STORED,)),
     ] = None,
     offset: Annotated[
         str,
-        option("Of the candidate's foot_x from the reference's; auto: estimate it.", "NUMBER|auto"),
-        For((ONE,)),
+        opt.option(
+            "Of the candidate's foot_x from the reference's; auto: estimate it.", "NUMBER|auto"
+        ),
+        opt.For((ONE,)),
     ] = "0",
     noise: Annotated[
         str,
-        option(
+        opt.option(
             "Of the clamp readings over their largest magnitude, as 0.01: the limits are widened "
             "by it; auto: estimate it.",
             "NUMBER|auto",
         ),
-        For((ONE, SPACE)),
+        opt.For((ONE, SPACE)),
     ] = "0",
-    direction: Annotated[Way, For((ONE, SEVERAL), (A_RIG,))] = None,
+    direction: Annotated[opt.Way, opt.For((ONE, SEVERAL), (opt.A_RIG,))] = None,
     tolerances: Annotated[
         Path | None,
-        option("TOML file whose [tolerances] are the limits.", "FILE"),
-        For((ONE, SPACE)),
+        opt.option("TOML file whose [tolerances] are the limits.", "FILE"),
+        opt.For((ONE, SPACE)),
     ] = None,
     uncertainty: Annotated[
         Path | None,
-        option("Case file whose [uncertainty] holds for a reference that is a file.", "FILE"),
-        For((ONE,), (_STORED,)),
+        opt.option("Case file whose [uncertainty] holds for a reference that is a file.", "FILE"),
+        opt.For((ONE,), (_STORED,)),
     ] = None,
     budget: Annotated[
         Path | None,
-        option("budget.json of that reference, for its numerics.", "FILE"),
-        For((ONE,)),
+        opt.option("budget.json of that reference, for its numerics.", "FILE"),
+        opt.For((ONE,)),
     ] = None,
-    frame: Annotated[InFrame, For((SPACE,))] = "world",
+    frame: Annotated[opt.InFrame, opt.For((SPACE,))] = "world",
 ) -> bool:
     """Compare readings with others or with a closed form.
 
@@ -101,20 +89,20 @@ def compare(
     """
     job = None if Path(reference).suffix.lower() in TABLES else load_case(reference)
     stored = [regular_file(reference, "readings file", sys.maxsize)] if job is None else []
-    first, candidates = candidates[0], pass_files(candidates)
-    passes = len(candidates) > 1 and are_passes(candidates)
+    first, candidates = candidates[0], opt.pass_files(candidates)
+    passes = len(candidates) > 1 and opt.are_passes(candidates)
     kind = _kind(job, stored, candidates[:1] if passes else candidates)
     raw = kind == ONE and bool(column or reference_column)  # then our files are read as a rig's
-    rigs = raw or passes or not no_rigs([*stored, *candidates])
-    require_use(context, kind, *([_STORED] if stored else []), *([A_RIG] if rigs else []))
-    numbers = number_or_auto("--offset", offset), number_or_auto("--noise", noise)
+    rigs = raw or passes or not opt.no_rigs([*stored, *candidates])
+    opt.require_use(context, kind, *([_STORED] if stored else []), *([opt.A_RIG] if rigs else []))
+    numbers = opt.number_or_auto("--offset", offset), opt.number_or_auto("--noise", noise)
     with waiting("comparing"):
         from compare.commands import comparing
 
         rig = comparing.RigFiles(column or (), beam, direction, frame)
         if kind == SEVERAL:
-            several = comparing.side_by_side_of(job, Path(reference), candidates, rig)
-            return comparing.keep_side_by_side(several, out or Path("results") / "side-by-side")
+            place = out or Path("results") / "side-by-side"
+            return comparing.side_by_side(job, Path(reference), candidates, rig, place)
         if job is not None:
             job = comparing.turned(job, candidates if passes else [], rig)
         other = replace(rig, columns=reference_column or (), beam=reference_beam)
@@ -130,8 +118,7 @@ def compare(
     return comparing.keep_comparison(found, out or default, body, repeated)
 
 
-def _kind(job: "AnyJob | None", stored: list[Path], candidates: list[Path]) -> str:
-    """Whether the sweeps are in space, and of how many candidates."""
+def _kind(job: AnyJob | None, stored: list[Path], candidates: list[Path]) -> str:
     in_space = job is not None and job.kind == SPACE
     if stored:
         from compare.read.space_readings import is_spatial

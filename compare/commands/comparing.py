@@ -137,10 +137,10 @@ def keep_comparison(
     return found.agrees
 
 
-def side_by_side_of(
-    job: AnyJob | None, reference: Path, files: list[Path], rig: RigFiles
-) -> SideBySide:
-    """Many files of readings, against one reference and each other."""
+def side_by_side(
+    job: AnyJob | None, reference: Path, files: list[Path], rig: RigFiles, out: Path
+) -> bool:
+    """Set files of readings against one reference and each other; whether all agree."""
     if len({path.absolute() for path in files}) < len(files):
         given = ", ".join(map(str, files))
         raise InputError("CANDIDATE", given, "each file once", "leave the second one out")
@@ -151,13 +151,8 @@ def side_by_side_of(
 
     exact = job.solve() if isinstance(job, Job) else read(reference)
     known = vibrissa_of(exact)
-    named = distinct_names(files)
-    case = exact.provenance.get("case") or "Sweeps"
-    return SideBySide.of(exact, {n: read(path, known) for n, path in named.items()}, case=case)
-
-
-def keep_side_by_side(found: SideBySide, out: Path) -> bool:
-    """Write and print how far all are apart; whether all agree."""
+    sweeps = {name: read(path, known) for name, path in distinct_names(files).items()}
+    found = SideBySide.of(exact, sweeps, case=exact.provenance.get("case") or "Sweeps")
     with page_folder(out) as folder:
         for readings in (found.reference, *(one.candidate for one in found.against.values())):
             note_rows(readings)

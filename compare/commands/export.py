@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 from analytic.problem.errors import InputError
 from compare.commands.options import CaseName, flag, option, require_fraction, words
 from compare.commands.output import check_own, output_folder, waiting
+from compare.read.case import load_case
+from compare.read.job import Job
 from mujoco_models.allowed import BeamKind
 
 if TYPE_CHECKING:
@@ -61,8 +63,6 @@ def export(
         check_own(out, "In a robot:")
     with waiting("loading"):
         from compare.commands import terminal
-        from compare.read.case import load_case
-        from compare.read.job import Job
         from compare.simulate.prescription import LADDER, prescribe
         from mujoco_models.beams.available import require
         from mujoco_models.export.sweep import beside
@@ -154,7 +154,6 @@ def _quantity(name: str, text: str, unit: str, si: bool) -> float:
 
 
 def _lines(found: "Prescription", error: float, si: bool) -> list[str]:
-    """What was chosen, and what was measured of it."""
     from compare.simulate.prescription import REFERENCE, REFERENCE_OFF
 
     whisker = found.whisker

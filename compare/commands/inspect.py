@@ -10,11 +10,12 @@ from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 from compare.commands.options import Changes, For, flag, option, out_folder, require_use, words
 from compare.commands.output import check_own, output_folder
+from compare.read.case import load_case
+from compare.read.job import AnyJob, Job
 from compare.read.kinds import MODEL, PLANE
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 
 if TYPE_CHECKING:
-    from compare.read.job import AnyJob
     from compare.simulate.inspection import Inspection
 
 FILE, SINGLE = "a model's own file", "single precision"
@@ -133,10 +134,6 @@ def _of_a_file(path: Path, names: dict[str, str | None], beam: Path | None) -> "
 
 
 def _of_a_case(case: str) -> "Inspection":
-    """What the model of a case is, beside the vibrissa that the case states."""
-    from compare.read.case import load_case
-    from compare.read.job import Job
-
     job = load_case(case)
     if not isinstance(job, Job) or job.model is None:
         raise InputError("MODEL", case, "a model, or a case with one", "or ask for --float32")
@@ -145,21 +142,18 @@ def _of_a_case(case: str) -> "Inspection":
     return Inspection(measured_beam(job.model), job.case.beam)
 
 
-def _in_single_precision(job: "AnyJob", folder: Path, stiffnesses: str) -> bool:
+def _in_single_precision(job: AnyJob, folder: Path, stiffnesses: str) -> bool:
     """Evaluate the states at rest by what is installed for it, over the contact stiffness."""
-    from compare.read.job import Job
-
     if not isinstance(job, Job) or job.kind != PLANE:
         raise InputError("--float32", "given", f"for {PLANE}", f"this is {job.kind}")
     own = float(job.settings.contact_stiffness)
     wanted = sorted({own, *_numbers(stiffnesses)})
-    from engines.precision.evaluators import evaluators
+    from engines.precision.gate import by_stiffness, evaluators, gate
 
     there = evaluators()
     with output_folder(folder) as place:
         from compare.commands import terminal
         from compare.show.float32 import losses_table, picture, sentence
-        from engines.precision.gate import by_stiffness, gate
 
         steps = len(wanted) * job.case.sweep.stations
         with terminal.progress("single precision", steps) as advance:

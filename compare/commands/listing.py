@@ -57,7 +57,7 @@ def _engines() -> Iterator[str]:
 
 
 def _methods() -> Iterator[str]:
-    from analytic.from_clamp.earlier.methods import NAMES
+    from analytic.from_clamp.earlier import NAMES
 
     yield from NAMES
 

@@ -8,17 +8,16 @@ import sys
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
+from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
+from compare.read.case import load_case
+from compare.read.job import AnyJob, Job, engines_beside_exact
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from mujoco_models.allowed import BeamKind, ObstacleKind
-
-if TYPE_CHECKING:
-    from compare.read.job import AnyJob
 
 IN_THE_PLANE = (PLANE, MOTION, MODEL)
 ANY_CASE = (*IN_THE_PLANE, SPACE)
@@ -92,7 +91,6 @@ def pass_files(files: Iterable[Path]) -> list[Path]:
 
 
 def are_passes(files: Iterable[Path]) -> bool:
-    """Whether ``rig`` wrote all of these files of readings."""
     from analytic import Readings
 
     return no_rigs(files) and all("pass" in Readings.read(file).provenance for file in files)
@@ -184,23 +182,18 @@ class Changes:
     timestep: float | None = None
     engines: str | None = None
 
-    def load(self, name: str) -> "AnyJob":
+    def load(self, name: str) -> AnyJob:
         """The case of that name or TOML file, with the engines that are to sweep it."""
-        from compare.read.case import load_case
-        from compare.read.job import engines_beside_exact
-
         job = load_case(name)
         if self.engines is None:
             return job
         return replace(job, engines=engines_beside_exact(self.engines))
 
-    def kind(self, job: "AnyJob") -> str:
+    def kind(self, job: AnyJob) -> str:
         moved = self.motion or self._given("speed", "timestep")
         return MOTION if moved and job.kind == PLANE else job.kind
 
-    def made(self, job: "AnyJob") -> "AnyJob":
-        from compare.read.job import Job
-
+    def made(self, job: AnyJob) -> AnyJob:
         given = self._given("segments", "beam", "obstacle")
         given |= {"planar": False} if self.spatial else {}
         made = job.changed(job.stations if self.stations is None else self.stations, given)
@@ -241,7 +234,6 @@ def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
 
 
 def require_fraction(option: str, value: float, usual: str) -> None:
-    """Refuse an error that is no fraction of a reading's magnitude."""
     if not 0 < value < 1:
         raise InputError(option, value, "between 0 and 1", f"{usual} is usual")
 

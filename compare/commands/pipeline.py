@@ -6,10 +6,12 @@ Solve the case, simulate it, compare, write the report, print: a job says how ea
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.files import remove_own
+from analytic.space import Body
+from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.output import waiting
 from compare.commands.sweeping import AnyReadings, printed, simulated, sweep_file
@@ -25,10 +27,6 @@ from compare.show.side_by_side import SideBySide, reasons, summary, write_side_b
 from engines import Outcome, list_engines
 from engines.apart import sweep_apart
 
-if TYPE_CHECKING:
-    from analytic.space import Body
-    from compare.align.frames import Frame
-
 AnyComparison: TypeAlias = Comparison | SpatialComparison
 
 
@@ -41,7 +39,7 @@ class Asked:
     target: float | None = None
     frames: int | None = None  # of a film; None for no film
     certified: bool = False
-    frame: "Frame" = "world"  # of the components in space
+    frame: Frame = "world"  # of the components in space
 
 
 def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
@@ -94,7 +92,7 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
 
 
 def _filmed(
-    found: AnyComparison, folder: Path, body: "Body | None", frames: int | None
+    found: AnyComparison, folder: Path, body: Body | None, frames: int | None
 ) -> Film | None:
     """The film, if there is to be one; an older one would be of other sweeps."""
     from compare.show.animation import plane, space
@@ -116,7 +114,7 @@ def reported(
     folder: Path,
     budget: Parted | None = None,
     film: Film | None = None,
-    body: "Body | None" = None,
+    body: Body | None = None,
 ) -> Path:
     with waiting("drawing"):
         written = write_report(comparison, folder, budget, film, body)
@@ -148,7 +146,6 @@ def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
 
 
 def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_budget: bool) -> bool:
-    """Sweep a case with the engines of its job, and write one report of all; whether all agree."""
     outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
     if not isinstance(exact, Readings):
@@ -193,9 +190,5 @@ def _swept(job: Job, folder: Path) -> Sequence[Outcome]:
 
 def _rows(outcomes: Sequence[Outcome]) -> list[EngineOutcome]:
     known = {found.name: found for found in list_engines()}
-    rows = []
-    for one in outcomes:
-        its = known[one.engine]
-        version = its.version or "none"
-        rows.append(EngineOutcome(its.name, its.role, version, its.tuned, one.trouble))
-    return rows
+    each = [(known[one.engine], one.trouble) for one in outcomes]
+    return [EngineOutcome(x.name, x.role, x.version or "none", x.tuned, why) for x, why in each]

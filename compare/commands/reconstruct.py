@@ -5,23 +5,9 @@ from typing import Annotated
 
 import typer
 
-from analytic.problem.errors import InputError
-from compare.commands.options import (
-    A_RIG,
-    BeamFile,
-    Columns,
-    For,
-    InFrame,
-    Way,
-    from_rigs,
-    no_rigs,
-    option,
-    out_folder,
-    pass_files,
-    require_use,
-    words,
-)
-from compare.commands.output import distinct_name, distinct_names, waiting
+from analytic.problem.errors import InputError, because
+from compare.commands import options as opt
+from compare.commands.output import distinct_name, distinct_names, output_folder, waiting
 from compare.read.case import load_space_job
 from compare.read.kinds import SPACE
 from compare.read.toml import TomlFile
@@ -35,47 +21,47 @@ def reconstruct(
         list[Path],
         typer.Argument(metavar="FILE...", help="Readings, or a folder that `rig` wrote."),
     ],
-    out: Annotated[Path | None, out_folder("results/FILE-reconstructed")] = None,
-    beam: Annotated[BeamFile, For((SWEEP, SPACE))] = None,
-    column: Annotated[Columns, For((SWEEP, SPACE))] = None,
-    direction: Annotated[Way, For((SWEEP,), (A_RIG,))] = None,
+    out: Annotated[Path | None, opt.out_folder("results/FILE-reconstructed")] = None,
+    beam: Annotated[opt.BeamFile, opt.For((SWEEP, SPACE))] = None,
+    column: Annotated[opt.Columns, opt.For((SWEEP, SPACE))] = None,
+    direction: Annotated[opt.Way, opt.For((SWEEP,), (opt.A_RIG,))] = None,
     noise: Annotated[
         float | None,
-        option("Of the clamp readings over their largest magnitude, as 0.01.", "NUMBER"),
+        opt.option("Of the clamp readings over their largest magnitude, as 0.01.", "NUMBER"),
     ] = None,
     offset: Annotated[
         float,
-        option(
+        opt.option(
             "By how much foot_x is too large, as `compare --offset auto` finds it; in the "
             "vibrissa's unit of length, metres beside units.",
             "NUMBER",
         ),
-        For((SWEEP,)),
+        opt.For((SWEEP,)),
     ] = 0.0,
     friction: Annotated[
         str | None,
-        option(
+        opt.option(
             "Friction coefficient of the sweep; auto: estimate it from Phase B.",
             "NUMBER|auto",
             "the file's, or that of --beam",
         ),
-        For((SWEEP,)),
+        opt.For((SWEEP,)),
     ] = None,
     method: Annotated[
         str,
-        option("Which methods; `vibrissa list methods` has all.", "A,B,..."),
-        For((SWEEP,)),
+        opt.option("Which methods; `vibrissa list methods` has all.", "A,B,..."),
+        opt.For((SWEEP,)),
     ] = "elastica",
     fit: Annotated[
         str | None,
-        option(
+        opt.option(
             "The whole object: circle, ellipse, superellipse, convex, in space sphere, ellipsoid, "
             "cylinder, convex; auto: the likeliest of them, in space but for convex. Exit code 1 "
             "if it does not explain the readings.",
             "FAMILY",
         ),
     ] = None,
-    frame: Annotated[InFrame, For((SPACE,), (A_RIG,))] = "world",
+    frame: Annotated[opt.InFrame, opt.For((SPACE,), (opt.A_RIG,))] = "world",
 ) -> bool:
     """Find the object from the clamp readings alone.
 
@@ -87,15 +73,17 @@ def reconstruct(
     known = None  # the case in space that the vibrissa's file is, if it is one
     if beam is not None and "body" in TomlFile.read(beam, "beam file").tables:
         known = load_space_job(beam)
-    found = pass_files(files)
-    from compare.read.space_readings import is_spatial
+    found = opt.pass_files(files)
+    from compare.read.space_readings import is_spatial, read_space
 
     in_space = [one for one in found if known is not None or is_spatial(one)]
     swept = [one for one in found if one not in in_space]
     if swept:
-        require_use(context, SWEEP, *([A_RIG] if column or from_rigs(swept) else []))
+        opt.require_use(context, SWEEP, *([opt.A_RIG] if column or opt.from_rigs(swept) else []))
     if in_space:
-        require_use(context, SPACE, *([A_RIG] if column or not no_rigs(in_space) else []))
+        opt.require_use(
+            context, SPACE, *([opt.A_RIG] if column or not opt.no_rigs(in_space) else [])
+        )
     with waiting("loading"):
         from compare.commands import reconstructing
     rig, level = reconstructing.RigFiles(column or (), beam, direction, frame), noise or 0.0
@@ -107,17 +95,18 @@ def reconstruct(
     if swept:
         passes = [reconstructing.without_faults(one, offset) for one in rig.read_all(swept)]
         where = place(files[0], *["passes"] * bool(in_space))
-        good = reconstructing.in_the_plane(passes, where, noise, friction, words(method), fit)
-    sweeps = []
+        good = reconstructing.in_the_plane(passes, where, noise, friction, opt.words(method), fit)
+    sweeps, body = [], None if known is None else known.body
+    vibrissa, tangent = (known.case.beam, known.case.path.tangent) if known else (None, None)
     for name, path in distinct_names(in_space).items() if in_space else ():
-        sweeps.append(reconstructing.read_in_space(path, known, rig))
-        where = place(path, *[name] * (len(found) > 1))
-        good &= reconstructing.in_space(sweeps[-1], known, where, level)
+        sweeps.append(read_space(path, vibrissa, tangent, rig.columns, rig.frame))
+        with output_folder(place(path, *[name] * (len(found) > 1))) as folder:
+            good &= reconstructing.find_body(sweeps[-1], body, folder, level, True)
     if sweeps and fit is not None:
         try:
             good &= reconstructing.body_of(sweeps, place(in_space[0]), level, fit)
         except InputError as error:
             if good:
                 raise
-            raise error.because("what is said of the readings above comes first") from error
+            raise because(error, "what is said of the readings above comes first") from error
     return good

@@ -28,15 +28,8 @@ from compare.commands import terminal
 from compare.commands.options import number_or_auto
 from compare.commands.output import output_folder, waiting
 from compare.commands.sweeping import RigFiles as RigFiles
-from compare.commands.sweeping import (
-    deviations,
-    find_body,
-    keep_scene,
-    note_rows,
-    print_reconstruction,
-)
-from compare.read.job import SpaceJob
-from compare.read.space_readings import read_space
+from compare.commands.sweeping import deviations, keep_scene, note_rows, print_reconstruction
+from compare.commands.sweeping import find_body as find_body
 from compare.sense.record import without_dropouts
 from compare.show.fits import band_document, band_summary, object_document, object_summary
 from compare.show.numbers import quantity
@@ -44,19 +37,6 @@ from compare.show.passes import lag_remembered
 from compare.show.scene import SweepScene, solid_ply
 
 CONVEX = "convex"
-
-
-def read_in_space(file: Path, known: SpaceJob | None, rig: RigFiles) -> SpatialReadings:
-    """A file's readings, of the vibrissa of a case if there is one."""
-    beam, tangent = (known.case.beam, known.case.path.tangent) if known else (None, None)
-    return read_space(file, beam, tangent, rig.columns, rig.frame)
-
-
-def in_space(readings: SpatialReadings, known: SpaceJob | None, place: Path, noise: float) -> bool:
-    """Find the body from a sweep's readings; whether a vibrissa can have them."""
-    body = None if known is None else known.body
-    with output_folder(place) as folder:
-        return find_body(readings, body, folder, noise, True)
 
 
 def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: str) -> bool:
@@ -147,7 +127,11 @@ def in_the_plane(
                     f"{len(passes)} passes: at one foot position their contact points scatter by "
                     f"{quantity(apart, 'length', passes[0].beam)} in the median"
                 )
-            points = pd.concat([_points(*one) for one in zip(passes, each, strict=True)])
+            names = [one.provenance.get("pass", one.source) for one in passes]
+            points = pd.concat(
+                found.assign(foot_x=one.values("foot_x"), **{"pass": name})
+                for name, one, found in zip(names, passes, each, strict=True)
+            )
             shown = points if len(passes) > 1 else points.drop(columns="pass")
             terminal.keep(folder / f"points{end}.csv", shown)
             with waiting("drawing"):
@@ -161,11 +145,6 @@ def in_the_plane(
     if fitted is None:
         return none is None
     return fitted.explains and (fitted.passes is None or fitted.passes.consistent)
-
-
-def _points(readings: Readings, found: pd.DataFrame) -> pd.DataFrame:
-    name = readings.provenance.get("pass", readings.source)
-    return found.assign(foot_x=readings.values("foot_x"), **{"pass": name})
 
 
 def _rubbing(readings: Readings, said: str, noise: Mapping[str, float] | None) -> Readings:

@@ -5,34 +5,9 @@ from typing import Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.options import (
-    ANY_CASE,
-    AT_REST,
-    COMPARED,
-    EXACT,
-    IN_MUJOCO,
-    IN_THE_PLANE,
-    SIMULATED,
-    WITH_MUJOCO,
-    Beam,
-    CaseName,
-    Changes,
-    For,
-    InFrame,
-    InMotion,
-    Obstacle,
-    Out,
-    Segments,
-    Spatial,
-    Speed,
-    Stations,
-    Timestep,
-    flag,
-    option,
-    require_fraction,
-    require_use,
-)
+from compare.commands import options as opt
 from compare.commands.output import page_folder, waiting
+from compare.read.job import Job
 from compare.read.kinds import PLANE, SPACE
 
 _OURS = ("mujoco",)
@@ -40,11 +15,11 @@ _OURS = ("mujoco",)
 
 def run(
     context: typer.Context,
-    case: CaseName,
-    out: Out = None,
+    case: opt.CaseName,
+    out: opt.Out = None,
     engine: Annotated[
         str | None,
-        option(
+        opt.option(
             "What sweeps it beside its closed form: see `vibrissa list engines`; exact: only that.",
             "A,B,...",
             "the case's, or mujoco",
@@ -52,41 +27,45 @@ def run(
     ] = None,
     sweep_only: Annotated[
         bool,
-        flag("--sweep-only", "Sweep in the engines alone, and compare nothing."),
-        For(ANY_CASE, (SIMULATED,)),
+        opt.flag("--sweep-only", "Sweep in the engines alone, and compare nothing."),
+        opt.For(opt.ANY_CASE, (opt.SIMULATED,)),
     ] = False,
     budget: Annotated[
         bool,
-        flag("--budget", "Split MuJoCo's disagreement into its parts too."),
-        For(ANY_CASE, (IN_MUJOCO, COMPARED)),
+        opt.flag("--budget", "Split MuJoCo's disagreement into its parts too."),
+        opt.For(opt.ANY_CASE, (opt.IN_MUJOCO, opt.COMPARED)),
     ] = False,
     target: Annotated[
         float | None,
-        option("Find the coarsest settings, or the fastest motion, with at most this rms.", "RMS"),
-        For(IN_THE_PLANE, (WITH_MUJOCO, "--budget")),
+        opt.option(
+            "Find the coarsest settings, or the fastest motion, with at most this rms.", "RMS"
+        ),
+        opt.For(opt.IN_THE_PLANE, (opt.WITH_MUJOCO, "--budget")),
     ] = None,
     film: Annotated[
-        bool, flag("--film", "Draw the sweep in motion too."), For(ANY_CASE, (WITH_MUJOCO,))
+        bool,
+        opt.flag("--film", "Draw the sweep in motion too."),
+        opt.For(opt.ANY_CASE, (opt.WITH_MUJOCO,)),
     ] = False,
     frames: Annotated[
         int,
         typer.Option(min=2, max=2000, help="Of the film."),
-        For(ANY_CASE, (WITH_MUJOCO, "--film")),
+        opt.For(opt.ANY_CASE, (opt.WITH_MUJOCO, "--film")),
     ] = 48,
     certified: Annotated[
         bool,
-        flag("--certified", "Check the closed form's stations by integration from the clamp."),
-        For(ANY_CASE, (EXACT,)),
+        opt.flag("--certified", "Check the closed form's stations by integration from the clamp."),
+        opt.For(opt.ANY_CASE, (opt.EXACT,)),
     ] = False,
-    stations: Stations = None,
-    segments: Segments = None,
-    beam: Beam = None,
-    obstacle: Obstacle = None,
-    spatial: Spatial = False,
-    motion: InMotion = False,
-    speed: Speed = None,
-    timestep: Timestep = None,
-    frame: Annotated[InFrame, For((SPACE,), (WITH_MUJOCO,))] = "world",
+    stations: opt.Stations = None,
+    segments: opt.Segments = None,
+    beam: opt.Beam = None,
+    obstacle: opt.Obstacle = None,
+    spatial: opt.Spatial = False,
+    motion: opt.InMotion = False,
+    speed: opt.Speed = None,
+    timestep: opt.Timestep = None,
+    frame: Annotated[opt.InFrame, opt.For((SPACE,), (opt.WITH_MUJOCO,))] = "world",
 ) -> bool:
     """Sweep a case in both models, compare, and write the report.
 
@@ -94,15 +73,17 @@ def run(
     in motion, with our vibrissa or a user's own model: as the case's file says. In space the body
     is also found from the clamp.
     """
-    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine)
+    changes = opt.Changes(
+        stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine
+    )
     loaded = changes.load(case)
     kind = changes.kind(loaded)
-    at_rest = [AT_REST] if loaded.kind == PLANE else []
-    require_use(context, kind, *_done(loaded.engines, sweep_only), *at_rest)
+    at_rest = [opt.AT_REST] if loaded.kind == PLANE else []
+    opt.require_use(context, kind, *_done(loaded.engines, sweep_only), *at_rest)
     if kind != PLANE and loaded.engines not in ((), _OURS):
         raise InputError("engine", ", ".join(loaded.engines), "exact or mujoco", f"this is {kind}")
     if target is not None:
-        require_fraction("--target", target, "1e-3")
+        opt.require_fraction("--target", target, "1e-3")
     job = changes.made(loaded)
     with page_folder(changes.folder(out, job.case.name)) as folder:
         with waiting("loading"):
@@ -115,28 +96,26 @@ def run(
 
 def _done(engines: tuple[str, ...], sweep_only: bool) -> list[str]:
     """What is done with a case, as options ask for it."""
-    done = [EXACT] * (not sweep_only or not engines) + [SIMULATED] * bool(engines)
+    done = [opt.EXACT] * (not sweep_only or not engines) + [opt.SIMULATED] * bool(engines)
     if "mujoco" in engines:
-        done.append(IN_MUJOCO)
+        done.append(opt.IN_MUJOCO)
     if engines and not sweep_only:
-        done += [COMPARED] + [WITH_MUJOCO] * (engines == _OURS)
+        done += [opt.COMPARED] + [opt.WITH_MUJOCO] * (engines == _OURS)
     return done
 
 
 def view(
     context: typer.Context,
-    case: Annotated[CaseName, For((PLANE,))],
-    stations: Stations = None,
-    segments: Segments = None,
-    beam: Beam = None,
-    obstacle: Obstacle = None,
+    case: Annotated[opt.CaseName, opt.For((PLANE,))],
+    stations: opt.Stations = None,
+    segments: opt.Segments = None,
+    beam: opt.Beam = None,
+    obstacle: opt.Obstacle = None,
 ) -> bool:
     """Show the sweep in MuJoCo's interactive viewer."""
-    changes = Changes(stations, segments, beam, obstacle)
+    changes = opt.Changes(stations, segments, beam, obstacle)
     loaded = changes.load(case)
-    require_use(context, loaded.kind, IN_MUJOCO, SIMULATED)
-    from compare.read.job import Job
-
+    opt.require_use(context, loaded.kind, opt.IN_MUJOCO, opt.SIMULATED)
     job = changes.made(loaded)
     if isinstance(job, Job):
         from mujoco_models import view_sweep

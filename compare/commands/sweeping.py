@@ -181,7 +181,6 @@ def _phases(counts: pd.Series) -> str:
 
 
 def _of_the_plane(readings: Readings) -> list[str]:
-    """Its snap-off, its motion, and what is beyond the paper."""
     table = readings.table
     unsettled = readings.provenance.get("unsettled", {})
     parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
@@ -198,7 +197,6 @@ def _of_the_plane(readings: Readings) -> list[str]:
 
 
 def _of_space(readings: SpatialReadings) -> list[str]:
-    """Where the vibrissa touches and leaves the body."""
     parts, events = [], readings.provenance["events"]
     for event in events:
         x, _, z = (value / readings.beam.length for value in event["foot"])

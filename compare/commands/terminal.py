@@ -5,21 +5,15 @@ Lengths are printed in units of the vibrissa's length L, whatever the units of t
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console, JustifyMethod
 from rich.measure import Measurement
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Column
 from rich.table import Table as RichTable
 from rich.text import Text as RichText
@@ -28,8 +22,7 @@ from analytic.problem.files import write_whole
 from compare.show.document import Block, Items, Table, Text, Verdict
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from pandas import DataFrame
+    from compare.show.page import Content
 
 _LONGEST = 24  # characters that are never folded
 _WIDEST = 1000  # characters of a table
@@ -75,24 +68,12 @@ def console() -> Console:
     return _Output(highlight=False)
 
 
-def keep(path: Path, content: "str | bytes | Mapping[str, Any] | DataFrame | Figure") -> None:
-    """Write a text, a JSON file of numbers by name, a table as CSV, or a picture."""
+def keep(path: Path, content: "Content") -> None:
     if not isinstance(content, str | bytes):
-        content = _as_file(content)
+        from compare.show.page import as_file  # slow to load, and a text needs none of it
+
+        content = as_file(content)
     print_written(write_whole(path, content))
-
-
-def _as_file(content: "Mapping[str, Any] | DataFrame | Figure") -> str | bytes:
-    from matplotlib.figure import Figure  # slow to load, and a text needs none of it
-
-    from compare.show.page import as_json, png
-
-    match content:
-        case Figure():
-            return png(content)
-        case Mapping():
-            return as_json(content)
-    return str(content.to_csv(index=False))
 
 
 def show(*blocks: Block) -> None:

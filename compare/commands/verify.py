@@ -26,7 +26,6 @@ def _sources(folder: Path) -> bool:
     from pandas import DataFrame
 
     from compare.commands import terminal
-    from compare.show.page import html
     from compare.verify import record
     from compare.verify.record import drawn, summary, verdict, verified
 
@@ -37,7 +36,7 @@ def _sources(folder: Path) -> bool:
             advance()
     found = verdict(rows)
     terminal.show(summary(rows), found)
-    terminal.keep(folder / "report.html", html(verified(rows)))
+    terminal.keep(folder / "report.html", verified(rows))
     terminal.keep(folder / "verify.png", drawn(rows))
     terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
     return found.good
@@ -47,11 +46,10 @@ def _peers(folder: Path) -> bool:
     from pandas import DataFrame
 
     from compare.commands import terminal
-    from compare.show.page import html
     from compare.verify.peers import CASES, page, summary
 
     rows = [row for case in CASES for row in case()]
     terminal.show(*summary(rows))
-    terminal.keep(folder / "peers.html", html(page(rows)))
+    terminal.keep(folder / "peers.html", page(rows))
     terminal.keep(folder / "peers.csv", DataFrame([asdict(row) for row in rows]))
     return True

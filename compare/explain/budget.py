@@ -21,7 +21,7 @@ from compare.explain.parts import (
     convergence,
     observed_order,
 )
-from compare.explain.variations import shifted_inward, stretched
+from compare.explain.variations import STEP, shifted_inward
 from compare.measure.disagreement import rms
 from compare.sense.noise import scales
 from mujoco_models.allowed import CONTACT_STIFFNESSES
@@ -122,8 +122,11 @@ def budget(
         account.add_extrapolated("corner", run["smooth"], run["sharp"], SHARPER)
     account.add_uncertain("unrest", unrest)
     # What is out of balance shows in the sensors, too: that is unrest, and counted there.
-    account.add_uncertain("sensor", _sensor(runs["calm"], shared, exact))
-    account.add_uncertain("extension", stretched(signatures, base.values("extension")[kept]))
+    # Their discrepancy from the sum of the contacts is the worst of the three readings.
+    sizes = units(base.beam, CLAMP_READINGS) / [*scales(exact).values()]
+    account.add_uncertain("sensor", sizes[:, None] * runs["calm"].values("discrepancy")[kept])
+    longer = signatures["length"] * base.values("extension")[kept] / STEP
+    account.add_uncertain("extension", longer)
     _, unsure = account.settle()
     phase = exact.table["phase"].to_numpy()[kept]
     checks = {"softness": shifted_inward(signatures, _sunk(base, shared), thickness)}
@@ -199,12 +202,6 @@ def _fitted_limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]
     errors = rms(np.tensordot(apart, stacked, axes=1)) / np.linalg.norm(apart * power)
     limit = np.tensordot(weights, stacked, axes=1)
     return np.asarray(limit), np.asarray(_COVERS * errors * np.linalg.norm(weights * power))
-
-
-def _sensor(run: Readings, shared: Shared, exact: Readings) -> Floats:
-    """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
-    sizes = units(run.beam, CLAMP_READINGS) / [*scales(exact).values()]
-    return np.asarray(sizes[:, None] * run.values("discrepancy")[shared.kept])
 
 
 _ORDER = 2.0  # of the chain in 1/N

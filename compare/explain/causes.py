@@ -18,7 +18,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says
 from compare.align.stations import interpolant
-from compare.explain.signatures import Resolved, unit_of
+from compare.explain.signatures import Resolved, between, unit_of
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
 
@@ -37,8 +37,6 @@ _SOLVED: dict[str, Any] = tomllib.loads(
 
 @dataclass(frozen=True)
 class Cause:
-    """A fault and what it does to the readings."""
-
     text: Callable[[float], str]  # the fault in words, by its size
     # Shape (3, stations); What a small fault adds to the readings for its size, over their largest
     # magnitudes.
@@ -61,7 +59,6 @@ class Cause:
         return None if solved is None else np.where(np.isfinite(solved), solved, linear)
 
     def over(self, stations: Booleans) -> Cause:
-        """The same at some of the stations."""
         return self._seen(lambda added: added[:, stations])
 
     def through(self, mixes: Floats) -> Cause:
@@ -122,11 +119,11 @@ def physical_faults(
         """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
         def change(size: float) -> Floats:
-            seen = _between(at(size, x), places, rows) / scale[:, None]
+            seen = between(at(size, x), places, rows) / scale[:, None]
             return np.where(only > 0, seen - true, 0.0)
 
         def acts(size: float, added: Floats, foot_x: Floats) -> Floats:
-            return np.where(only > 0, _between(at(size, foot_x), foot_x, added), added)
+            return np.where(only > 0, between(at(size, foot_x), foot_x, added), added)
 
         return Cause(text, only * slope * rate, -most, most, change, acts)
 
@@ -154,12 +151,6 @@ def physical_faults(
 
 def _scaled(by: Floats, size: float, rows: Floats, _: Floats) -> Floats:
     return np.asarray(rows * (1 + size * by))
-
-
-def _between(there: Floats, x: Floats, rows: Floats) -> Floats:
-    """Rows between the stations that they are of."""
-    order = np.argsort(x)
-    return np.stack([np.interp(there, x[order], row[order]) for row in rows])
 
 
 def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:

@@ -11,8 +11,6 @@ from compare.explain.variations import STEP
 
 
 class Fitted(NamedTuple):
-    """The best size of a signature."""
-
     size: float
     left: float  # sum of squares that it leaves
     fraction: float  # of the disagreement's sum of squares that it accounts for

@@ -75,11 +75,13 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
         return "; ".join([*notes, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
-        slope = found.reference.running_unit[0] * slopes(table, true)
-        stations = table["station"].to_numpy()
-        fresh = np.where(jumps > _ALLOWED * known, jumps, 0.0)
         cause = (
-            uneven(found, stations, error, slope, fresh, scale)
+            _unrest(found, error)
+            or _stepped(found, error, scale)
+            or _held(found, table["station"].to_numpy(), error)
+            or _humming(found, error)
+            or _jittering(found, error, found.reference.running_unit[0] * slopes(table, true))
+            or _scattered(found, error, np.where(jumps > _ALLOWED * known, jumps, 0.0), scale)
             or one_or_two(found, table, true, seen, scale, np.maximum(jumps, known))
             or _remembering(found, error, scale)
         )
@@ -193,25 +195,6 @@ _HUM = 0.8  # fraction of the disagreement's square that one frequency must expl
 _TURNS = 8  # periods at least over the sweep: what is slower is a model's own error
 _FINER = 4  # frequencies for each of the sweep's own
 _ALONG = 0.8  # fraction that lies along the readings' slope, if the foot is off; by chance a third
-
-
-def uneven(
-    found: Measurement,
-    stations: Integers,
-    error: Floats,
-    slopes: Floats,
-    jumps: Floats,
-    scale: Floats,
-) -> str | None:
-    """What makes errors, shape (3, stations), that differ from station to station."""
-    return (
-        _unrest(found, error)
-        or _stepped(found, error, scale)
-        or _held(found, stations, error)
-        or _humming(found, error)
-        or _jittering(found, error, slopes)
-        or _scattered(found, error, jumps, scale)
-    )
 
 
 def _unrest(found: Measurement, error: Floats) -> str | None:

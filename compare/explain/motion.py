@@ -78,9 +78,7 @@ def slower_and_finer_of_model(
 
 
 def motion_budget(
-    exact: Readings,
-    runs: Mapping[str, Readings],
-    of_our_chain: bool = False,
+    exact: Readings, runs: Mapping[str, Readings], of_our_chain: bool = False
 ) -> MotionBudget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
     shared = Shared.of(exact, *runs.values())

@@ -7,15 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from analytic import (
-    CLAMP_READINGS,
-    Case,
-    InputError,
-    Readings,
-    Sweep,
-    solve_sweep,
-    through_points,
-)
+from analytic import CLAMP_READINGS, Case, InputError, Readings, Sweep, solve_sweep, through_points
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.quantities import QUANTITIES
@@ -56,9 +48,9 @@ class Resolved:
         # At its own stations: between them it is not known to a thousandth.
         within = (swept >= foot_x.min()) & (swept <= foot_x.max())
         known = np.stack([reference.values(name)[within] for name in CLAMP_READINGS])
-        miss = (_at(solved, swept[within]) - known) / np.nanmax(np.abs(known), axis=1)[:, None]
+        miss = (between(swept[within], *solved) - known) / np.nanmax(np.abs(known), axis=1)[:, None]
         same = np.sqrt(np.nanmean(miss**2)) < _SAME
-        return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
+        return cls(case, points, foot_x, between(foot_x, *solved)) if same else None
 
     @property
     def swept(self) -> tuple[Floats, Floats]:
@@ -68,7 +60,7 @@ class Resolved:
     def change(self, fault: str, size: float) -> Floats | None:
         """What a fault adds to the clamp readings, by its size in the unit of `unit_of`."""
         try:
-            there = _at(_sweep(self._changed(fault, size)), self.foot_x)
+            there = between(self.foot_x, *_sweep(self._changed(fault, size)))
         except (InputError, ArithmeticError):
             return None
         if fault == "clamp":
@@ -156,7 +148,7 @@ def _extended(points: Floats, beyond: float) -> Floats:
     return np.vstack([*before, points, *after])
 
 
-def _at(sweep: tuple[Floats, Floats], foot_x: Floats) -> Floats:
-    """The clamp readings at `foot_x`, NaN where free and next to it."""
-    x, rows = sweep
-    return np.stack([np.interp(foot_x, x, row) for row in rows])
+def between(there: Floats, x: Floats, rows: Floats) -> Floats:
+    """Rows between the stations that they are of; NaN next to one without a number."""
+    order = np.argsort(x)
+    return np.stack([np.interp(there, x[order], row[order]) for row in rows])

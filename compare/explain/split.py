@@ -6,6 +6,7 @@ implementation, of whichever of the two; the second is the model's. An engine wi
 of its own shows what another model of the same rod does.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -20,8 +21,6 @@ ROUNDING = 1e-7
 
 @dataclass(frozen=True)
 class Split:
-    """What of a subject's disagreement is its implementation."""
-
     subject: str  # names of the engines
     twin: str
     # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
@@ -93,7 +92,8 @@ def split(
     disagreement, model = off.pop(subject), off.pop(twin)
     apart = between.snap_off.difference
     snap_off = None if apart is None else apart / exact.beam.length
-    return Split(subject, twin, disagreement, _rms(between), model, off, snap_off)
+    others = {n: rms for n, rms in off.items() if all(map(math.isfinite, rms.values()))}
+    return Split(subject, twin, disagreement, _rms(between), model, others, snap_off)
 
 
 def _rms(found: Measurement) -> dict[str, float]:

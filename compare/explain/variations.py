@@ -9,6 +9,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, Case, InputError, Readings, polygon, solve_sweep, with_friction
 from analytic.problem.arrays import Floats
 from analytic.problem.quantities import QUANTITIES
+from analytic.problem.reach import shifted
 
 STEP = 1e-3
 """Relative change of each quantity, from which its signature is taken."""
@@ -35,7 +36,7 @@ def variations(case: Case) -> dict[str, Readings]:
     thicker than the vibrissa, and one that is more curved towards the object may touch it twice: of
     those two the sweep is the exact one less what the opposite change does.
     """
-    case = case.shifted()  # nearby cases start a little elsewhere by default
+    case = shifted(case)  # nearby cases start a little elsewhere by default
     beam, tip_radius = case.beam, QUANTITIES["tip_radius"].value(case)
     units = {name: quantity.unit(case) for name, quantity in QUANTITIES.items()}
     units |= {"radius": beam.radius, "tip_radius": -tip_radius}
@@ -72,13 +73,9 @@ def on_polygon(case: Case, points: int) -> Readings:
     left, right = case.reach
     length = case.beam.length
     vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
-    return solve_sweep(replace(case.shifted(), profile=polygon(vertices)))
+    return solve_sweep(replace(shifted(case), profile=polygon(vertices)))
 
 
 def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:
     """What a contact that gives way does, as if the contour lay deeper by the penetration."""
     return -signatures["radius"] * penetration / (STEP * radius)
-
-
-def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
-    return np.asarray(signatures["length"] * extension / STEP)

@@ -21,8 +21,6 @@ _FOLLOWS, _READINGS, _FIRST = -1, 1, 2  # weights of a failure, beside 0
 
 @dataclass(frozen=True)
 class Failure:
-    """One limit that is exceeded."""
-
     name: str  # the reading, event or part of the record that it is about
     found: str  # what is wrong with it, with its number
     allowed: str  # how much is allowed, or what to do

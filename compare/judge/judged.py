@@ -1,11 +1,12 @@
 """A measurement that was judged: its verdict, and what is kept of it."""
 
-import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from typing import Any, TypeAlias
+
+from pydantic_core import to_jsonable_python
 
 from compare.judge.allowance import Allowance
 from compare.judge.failures import Failure, untrusted_stretches
@@ -84,6 +85,12 @@ class Judged(SweepPair[Sweep]):
         """What leads the verdict: of the failures of most weight that of the largest excess."""
         return max(self.exceeded, key=lambda one: (one.weight, one.excess), default=None)
 
+    def __bool__(self) -> bool:
+        # Any object is true: `assert compare(...)` held whatever was found.
+        raise TypeError(
+            "a comparison is neither true nor false: take `.agrees`, or assert_agreement"
+        )
+
     @property
     def agrees(self) -> bool:
         """Whether no limit is exceeded."""
@@ -131,19 +138,18 @@ class Judged(SweepPair[Sweep]):
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds: lengths in the beam's unit, contacts in space in L."""
         limits = self.tolerances.limits()
-        found: dict[str, Any] = _plain(
-            {
-                "verdict": "agrees" if self.agrees else "disagrees",
-                "failures": list(self.failures),
-                "noise": asdict(self.noise),
-                **self._own(),
-                "tolerances": {name: float(limit) for name, limit in limits.items()},
-                "tolerance_reasons": {name: limit.reason for name, limit in limits.items()},
-                "reference": _origin(self.reference),
-                "candidate": _origin(self.candidate),
-            }
-        )
-        return found
+        found = {
+            "verdict": "agrees" if self.agrees else "disagrees",
+            "failures": self.failures,
+            "noise": self.noise,
+            **self._own(),
+            "tolerances": limits,
+            "tolerance_reasons": {name: limit.reason for name, limit in limits.items()},
+            "reference": _origin(self.reference),
+            "candidate": _origin(self.candidate),
+        }
+        plain: dict[str, Any] = to_jsonable_python(found, inf_nan_mode="null")
+        return plain
 
     def metrics(self) -> dict[str, Number]:
         """What a row of a table holds: plain numbers, by component and by event."""
@@ -158,7 +164,6 @@ class Judged(SweepPair[Sweep]):
         return row
 
     def __repr__(self) -> str:
-        """The verdict, the events, and what failed."""
         return "\n".join(self.lines())
 
     def _tiles(self) -> dict[str, object]:
@@ -170,16 +175,7 @@ class Judged(SweepPair[Sweep]):
         return "<pre>" + "<br>".join(escape(line) for line in self.lines()) + "</pre>"
 
 
-def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever JSON can hold
-    """JSON has neither NaN nor infinity: None stands for both."""
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def _origin(readings: Sweep) -> dict[str, Any]:
     known = {k: v for k, v in readings.provenance.items() if k not in ("contour", "others")}
-    about = {"source": readings.source, "beam": asdict(readings.beam)}
+    about = {"source": readings.source, "beam": readings.beam}
     return {**about, "stations": len(readings.table), "provenance": known}

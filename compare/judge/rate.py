@@ -22,6 +22,7 @@ class Rate:
 
     speed: float  # of the foot [L/T1]
     damping_ratio: float  # of the first vibration, by dampers in proportion to the stiffness
+    average: float = 0.0  # of the way between two stations, over which readings are means
 
     @classmethod
     def of(cls, readings: "Readings") -> "Rate | None":
@@ -33,7 +34,8 @@ class Rate:
         speed = motion.get("speed")
         damping = of_the_model.get("damping_ratio", motion.get("damping_ratio"))
         if is_finite_number(speed) and is_finite_number(damping) and min(speed, damping) >= 0:
-            return cls(speed, damping)
+            average = motion.get("average")
+            return cls(speed, damping, average if is_finite_number(average) else 0.0)
         return None
 
     @property

@@ -41,7 +41,6 @@ class Limit(float):
     reason: str
 
     def __new__(cls, value: float, reason: str = "asked for by the caller") -> "Limit":
-        """A float with its reason."""
         limit = super().__new__(cls, value)
         limit.reason = reason
         return limit
@@ -147,8 +146,7 @@ class Tolerances(Limits):
     """
 
     rms: float = Limit(
-        2e-3,
-        "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less",
+        2e-3, "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less"
     )
     max: float = Limit(
         2e-2,
@@ -219,7 +217,12 @@ class Tolerances(Limits):
         bounces = 2 / stations + rate.speed / travel
         transition = self.transition + adds
         unclear = 4 * transition / travel
+        mean = min(max(rate.average, 0.0), 1.0) / (stations - 1)
         return {
+            "snap_off_window": Limit(
+                max(self.snap_off_window, mean),
+                f"{reasons['snap_off_window']}; a station is a mean over {mean:.1%} of the sweep",
+            ),
             "rms": Limit(rms, f"{self.rms:.1e} at rest ({reasons['rms']}), {what}{most}"),
             "max": Limit(max(self.max, _PEAK * rms), "ten times the rms, as at rest"),
             "transition": Limit(

@@ -11,7 +11,7 @@ from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components
-from compare.measure.disagreement import Disagreement, SweepPair, disagreement, rms
+from compare.measure.disagreement import SweepPair, disagreement, rms
 from compare.sense.touching import TouchingStations, paired_events, touching
 
 
@@ -56,17 +56,24 @@ def measure_in_space(
     stated: Mapping[str, float],
     frame: Frame = "world",
 ) -> SpatialMeasurement:
-    """Measure how far a candidate is off at the same stations, by the noise that is stated."""
     on, travel = touching(reference, candidate, stated), reference.running_values
     compared = on.reference & on.candidate
     phases = _phases(reference), _phases(candidate)
     same = None
     if phases[0] is not None and phases[1] is not None and compared.any():
         same = float((phases[0] == phases[1])[compared].mean())
+    phase = np.full(len(compared), "") if phases[0] is None else phases[0].astype(str)
+    exact, other, off = components(reference, frame), components(candidate, frame), {}
+    for names in (FORCE, MOMENT):
+        sizes = [np.abs(exact[name][reference.touching]).max(initial=0.0) for name in names]
+        scale = float(max(sizes)) or math.nan
+        for name in names:
+            error = (other[name] - exact[name])[compared] / scale
+            off[name] = disagreement(error, travel[compared], phase[compared], scale)
     return SpatialMeasurement(
         reference,
         candidate,
-        _disagreements(reference, candidate, frame, compared, travel),
+        off,
         paired_events(reference, candidate, travel, on),
         frame,
         travel,
@@ -77,26 +84,6 @@ def measure_in_space(
         int((reference.trusted & ~candidate.trusted).sum()),
         on,
     )
-
-
-def _disagreements(
-    reference: SpatialReadings,
-    candidate: SpatialReadings,
-    frame: Frame,
-    compared: Booleans,
-    travel: Floats,
-) -> dict[str, Disagreement]:
-    exact, other = components(reference, frame), components(candidate, frame)
-    phases = _phases(reference)
-    phase = np.full(len(compared), "") if phases is None else phases.astype(str)
-    found = {}
-    for names in (FORCE, MOMENT):
-        sizes = [np.abs(exact[name][reference.touching]).max(initial=0.0) for name in names]
-        scale = float(max(sizes)) or math.nan
-        for name in names:
-            error = (other[name] - exact[name])[compared] / scale
-            found[name] = disagreement(error, travel[compared], phase[compared], scale)
-    return found
 
 
 def _contacts(

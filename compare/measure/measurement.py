@@ -51,7 +51,6 @@ class Measurement(SweepPair[Readings]):
 
     @property
     def transitions(self) -> dict[str, Occurrence]:
-        """Where one phase gives way to the next, by name."""
         return {name: event for name, event in self.events.items() if name != "snap_off"}
 
     @property
@@ -133,7 +132,6 @@ class Measurement(SweepPair[Readings]):
                 yield name, "candidate", "reference", event.candidate
 
     def __repr__(self) -> str:
-        """The sweeps, and how far they are apart."""
         far = ", ".join(f"{name} {d.rms:.1e}" for name, d in self.disagreement.items())
         return (
             f"{type(self).__name__}({self.candidate.source} against {self.reference.source}: {far})"
@@ -141,10 +139,7 @@ class Measurement(SweepPair[Readings]):
 
 
 def measure(
-    reference: Readings,
-    candidate: Readings,
-    window: float,
-    offset: float | Literal["auto"] = 0.0,
+    reference: Readings, candidate: Readings, window: float, offset: float | Literal["auto"] = 0.0
 ) -> Measurement:
     """Measure how far `candidate` is from `reference`, from their readings alone."""
     for which, sweep in (("reference", reference), ("candidate", candidate)):
@@ -155,12 +150,10 @@ def measure(
     scales(reference)
     records = {"reference": inspect_record(reference)}
     if records["reference"].retreats:
-        raise InputError(
-            f"rows of the reference ({reference.source})",
-            next(records["reference"].defects()),
-            "in the order of the motion",
-            f"sort them by {reference.running}, or compare one sweep at a time",
-        )
+        what = next(records["reference"].defects())
+        allowed = "in the order of the motion"
+        remedy = f"sort them by {reference.running}, or compare one sweep at a time"
+        raise InputError(f"rows of the reference ({reference.source})", what, allowed, remedy)
     candidate = _held_alike(reference, candidate)
     candidate, records["candidate"], order = in_order(reference, candidate)
     judged = {"reference": classify(reference), "candidate": classify(candidate)}
@@ -176,11 +169,7 @@ def measure(
         shift = Offset(0.0 if offset == "auto" else checked_offset(offset))
     candidate = without_offset(candidate, shift.value)
     alignment = align(
-        reference,
-        candidate,
-        judged["reference"],
-        judged["candidate"],
-        records["candidate"].dropped,
+        reference, candidate, judged["reference"], judged["candidate"], records["candidate"].dropped
     )
 
     def at(one: tuple[float | None, float], other: tuple[float | None, float]) -> Occurrence:

@@ -28,8 +28,6 @@ _STEEP = 0.03  # ... of the largest magnitude: passes of which some have let go
 
 @dataclass(frozen=True)
 class Repeats:
-    """How far passes are from their mean."""
-
     names: tuple[str, ...]  # of the passes
     mean: Readings  # over stretches of the foot's travel in which half of the passes have rows
     # Shape (passes, 3); root mean squares over the largest magnitudes: drift that is left,
@@ -70,7 +68,8 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     farthest = int(np.argmax(np.sum(away**2, axis=(1, 2))))
     loaded = np.any(np.abs(mean[:, 1:]) > _TOUCHING * largest, axis=1)
     left_out = float(np.mean(~alike[loaded])) if loaded.any() else 0.0
-    kept = alike & ~_half_loaded(loaded)
+    # Loaded beside a free one, a stretch may hold rows in contact and rows of none.
+    kept = alike & ~(loaded & ~_between(loaded))
     mean, ends = mean[kept], ~_between(kept)[kept]
     # What the passes are away from the mean is averaged, not they: it is nearly straight.
     order = np.argsort(mean[:, 0])
@@ -142,14 +141,6 @@ def repeats(passes: Sequence[Readings]) -> Repeats:
     )
 
 
-def _half_loaded(loaded: Booleans) -> Booleans:
-    """Whether a stretch may hold rows in contact and rows of none: it is loaded beside a free one.
-
-    Of the stretches along the travel.
-    """
-    return loaded & ~_between(loaded)
-
-
 def _between(these: Booleans) -> Booleans:
     """Those whose neighbours both are of these; the first and the last have one."""
     beside = np.pad(these, 1, mode="edge")
@@ -170,12 +161,9 @@ def _means(
     means = [table.groupby(x).mean() for table, x in zip(tables, stretches, strict=True)]
     shared = sorted(set.intersection(*(set(one.index) for one in means)))
     if len(shared) < _FEWEST:
-        raise InputError(
-            "passes",
-            f"{len(shared)} stretches of the foot's travel in which all have rows",
-            f"{_FEWEST} or more",
-            "take passes over the same travel together",
-        )
+        what = f"{len(shared)} stretches of the foot's travel in which all have rows"
+        remedy = "take passes over the same travel together"
+        raise InputError("passes", what, f"{_FEWEST} or more", remedy)
     if tables[0]["foot_x"].iloc[0] > tables[0]["foot_x"].iloc[-1]:
         shared = shared[::-1]
     return means, pd.Index(shared)

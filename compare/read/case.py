@@ -64,21 +64,13 @@ def load_job(name_or_path: str | Path) -> Job:
     job = load_case(name_or_path)
     if isinstance(job, Job):
         return job
-    raise InputError(
-        f"{name_or_path}: [body]",
-        "given",
-        "a [profile], in the plane",
-        "`vibrissa run`, `compare`, `reconstruct` and the marker vibrissa_space take a body",
-    )
+    remedy = "`vibrissa run`, `compare`, `reconstruct` and the marker vibrissa_space take a body"
+    raise InputError(f"{name_or_path}: [body]", "given", "a [profile], in the plane", remedy)
 
 
 def load_space_job(path: str | Path) -> SpaceJob:
     job = load_case(path)
     if isinstance(job, SpaceJob):
         return job
-    raise InputError(
-        f"{path}: [body]",
-        "missing",
-        "given for a sweep in space",
-        "`vibrissa run` and the marker vibrissa take the case",
-    )
+    remedy = "`vibrissa run` and the marker vibrissa take the case"
+    raise InputError(f"{path}: [body]", "missing", "given for a sweep in space", remedy)

@@ -8,11 +8,16 @@ from pathlib import Path
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from analytic.problem.errors import InputError, near
+from analytic.problem.errors import InputError, called, near
 from compare.read.toml import KeyPlace
 
 _LONGEST_NAME = 100
 _OF_KINDS = ("profile", "body")  # tables that are of one of several kinds
+_PLAIN = {
+    "valid tuple": "list", "valid list": "list", "valid dictionary": "table",
+    "valid string": "text in quotes", "valid integer": "whole number",
+    "a valid boolean": "true or false", "valid number": "number",
+}  # fmt: skip
 UNKNOWN_KEY = "unknown_key"
 _brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = 80
@@ -46,9 +51,13 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
             allowed, remedy = f"one of {known}" if known else "given", "say what it is"
             remedy = near(context.get("tag", ""), re.findall("[a-z-]+", known), remedy)
             return InputError(f"{name}.kind", tag, allowed, remedy)
-        case "too_long" | "too_short" if context["field_type"] == "Tuple":
+        case "too_long" | "too_short" | "string_too_short":
             (count,) = (context[end] for end in ("max_length", "min_length") if end in context)
-            return InputError(name, value, f"a list of {count}", "change it")
+            allowed = f"a list of {count}"
+            if context.get("field_type") != "Tuple":
+                more = "not empty" if count == 1 else f"of {count} or more"
+                allowed = f"of {count} or fewer" if "max_length" in context else more
+            return InputError(name, value, allowed, "change it")
         case "model_type" | "dataclass_type":
             return InputError(name, value, "a table", "write its keys below its name in brackets")
         case "value_error":
@@ -56,10 +65,12 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
             if isinstance(refused, InputError):
                 named = refused.name.split(".")
                 if named[: len(inside)] == inside:  # it says which of the table's keys
-                    return refused.called(place([*outer, *named]))
+                    return called(refused, place([*outer, *named]))
             return InputError(name, value, "usable", str(refused))
     allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
-    return InputError(name, value, allowed.replace("valid tuple", "list"), "change it")
+    for theirs, plain in _PLAIN.items():
+        allowed = allowed.replace(theirs, plain)
+    return InputError(name, value, allowed, "change it")
 
 
 def require_known(given: object, allowed: Sequence[str]) -> None:

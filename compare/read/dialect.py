@@ -27,8 +27,6 @@ _COMMA_IS_POINT = str.maketrans(",.", ".,")
 
 
 class Dialect(NamedTuple):
-    """How a table is written."""
-
     separator: str | None  # between cells; None for blanks
     decimal: str  # ``"."`` or ``","``
 
@@ -80,12 +78,9 @@ def read_text_table(path: Path) -> RawTable:
     dialect = max(_DIALECTS, key=lambda one: _rows(one, head)[1])  # of equals the first
     begin, count = _rows(dialect, head)
     if not count:
-        raise InputError(
-            f"readings file {path}",
-            "without lines of two or more numbers",
-            "a table of numbers, its columns named in the line before",
-            "export it as CSV",
-        )
+        what = "without lines of two or more numbers"
+        allowed = "a table of numbers, its columns named in the line before"
+        raise InputError(f"readings file {path}", what, allowed, "export it as CSV")
     first, width = looked_at[begin][0], len(dialect.cells(head[begin]))
     titles = dialect.cells(head[begin - 1]) if begin else []
     if dialect.separator == "," and 2 * len(titles) == width:

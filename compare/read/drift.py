@@ -60,12 +60,9 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
     for which, here in free.items():
         sound = here & np.isfinite(values).all(axis=0)
         if sound.sum() < FEWEST:
-            raise InputError(
-                f"passes.{which}",
-                f"a stretch with {sound.sum()} rows of {name}, over {np.ptp(foot_x):.3g}",
-                f"one with {FEWEST} or more",
-                "take a longer one, leave it out, or check the unit and the gain of foot_x",
-            )
+            what = f"a stretch with {sound.sum()} rows of {name}, over {np.ptp(foot_x):.3g}"
+            remedy = "take a longer one, leave it out, or check the unit and the gain of foot_x"
+            raise InputError(f"passes.{which}", what, f"one with {FEWEST} or more", remedy)
         stretches.append(Stretch(foot_x[sound], values[:, sound]))
     means = [one.values.mean(axis=1) for one in stretches]
     uncertain = [_of_mean(one.values) for one in stretches]

@@ -38,12 +38,9 @@ class _MotionTable(Table):
         numbers = {name: x for name, x in self if name not in _MotionTable.model_fields}
         speed, solref = numbers["speed"], numbers["solref"]
         if isinstance(speed, InSI) and not beam.si and period:
-            raise InputError(
-                "motion.speed",
-                f"{float(speed):g} m/s",
-                "a number, in L/T1, where the vibrissa's length has no unit",
-                "give the length with a unit, or the speed without",
-            )
+            allowed = "a number, in L/T1, where the vibrissa's length has no unit"
+            remedy = "give the length with a unit, or the speed without"
+            raise InputError("motion.speed", f"{float(speed):g} m/s", allowed, remedy)
         numbers["speed"] = _over(speed, period and beam.length / period)
         for name in ("timestep", "ramp"):
             numbers[name] = _over(numbers[name], period)
@@ -55,12 +52,8 @@ class _MotionTable(Table):
         """The motion of a user's own model, which brings most of it with it."""
         for name in type(self).model_fields:
             if name in self.model_fields_set and name not in _OF_A_MODEL:
-                raise InputError(
-                    place(["motion", name]),
-                    "stated",
-                    f"left to the model; beside a [model] there are {', '.join(_OF_A_MODEL)}",
-                    "take it out",
-                )
+                allowed = f"left to the model; beside a [model] there are {', '.join(_OF_A_MODEL)}"
+                raise InputError(place(["motion", name]), "stated", allowed, "take it out")
         return self.build(beam)
 
     def _period(self, beam: Beam) -> float | None:
@@ -105,10 +98,7 @@ def _over(value: float | None, unit: float | None) -> float | None:
     if not isinstance(value, InSI):
         return None if value is None else float(value)
     if unit is None:
-        raise InputError(
-            "motion",
-            "with quantities that have units",
-            "with the period T1 of the free vibrissa, or its density, too",
-            'add period = "28 ms" or density = "7850 kg/m^3", or give numbers in L and T1',
-        )
+        allowed = "with the period T1 of the free vibrissa, or its density, too"
+        remedy = 'add period = "28 ms" or density = "7850 kg/m^3", or give numbers in L and T1'
+        raise InputError("motion", "with quantities that have units", allowed, remedy)
     return float(value) / unit

@@ -12,22 +12,12 @@ from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.from_clamp.calibration.measured import check_size as check_decades
 from analytic.from_clamp.noise import rounding
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import called
 from analytic.problem.table import as_numbers
+from compare.read import nonsense
 from compare.read.dialect import RawTable, read_text_table
 from compare.read.drift import FEWEST, Bent, Zero, bent, no_zero, zero_of
 from compare.read.kinds import TEXTS
-from compare.read.nonsense import (
-    check_ahead,
-    check_back,
-    check_channels,
-    check_drift,
-    check_free,
-    check_object,
-    check_sizes,
-    check_travel,
-    check_units,
-    spikes,
-)
 from compare.read.rig import cells, check_recorded, read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.units import DIMENSIONS, check_unit
@@ -41,8 +31,6 @@ _MIDDLE = 2.0  # times the root mean square of a bend is at most what it has mid
 
 @dataclass(frozen=True, repr=False)
 class Pass:
-    """One pass of the foot along its path."""
-
     name: str  # the file's, with the number of the pass if it has several
     direction: Direction  # which way the foot moves
     readings: Readings  # in the order of the motion; gaps (NaN) where a row has a defect
@@ -79,7 +67,7 @@ def usable(passes: list[Pass]) -> list[Pass]:
         check_decades(one.readings, one.readings.beam)
     for some in swept_alike(passes):
         each = [[one.readings.values(name) for name in CLAMP_READINGS] for one in some]
-        check_sizes([np.array(values) for values in each], [one.name for one in some])
+        nonsense.check_sizes([np.array(values) for values in each], [one.name for one in some])
     return passes
 
 
@@ -126,14 +114,14 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
             lost += len(rows)
             continue
         foot_x = rows["foot_x"].to_numpy(copy=True)
-        foot_x[spikes(foot_x[None])] = np.nan  # no stage leaps there and back
-        called = f"{path}, pass {number}" if groups.max() > groups.min() else f"{path}"
-        check_travel(foot_x, beam.length, called)
-        check_back(foot_x, path.stem)
+        foot_x[nonsense.spikes(foot_x[None])] = np.nan  # no stage leaps there and back
+        which = f"{path}, pass {number}" if groups.max() > groups.min() else f"{path}"
+        nonsense.check_travel(foot_x, beam.length, which)
+        nonsense.check_back(foot_x, path.stem)
         try:
             sweeps += read_sweeps(rows.assign(foot_x=foot_x), beam)
         except InputError as error:
-            raise error.called(f"{error.name} of {called}") from error
+            raise called(error, f"{error.name} of {which}") from error
     if not sweeps:
         what = f"{len(raw)}, of which {len(raw) // max(number, 1)} to a pass"
         remedy = "is it the right file, and [passes] column the one that changes with every pass?"
@@ -187,7 +175,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     raw = replace(raw, table=there.assign(foot_x=there["foot_x"] - late))
     read, counts = _read(raw), raw.provenance.get("rows", {})
     # They hide what else is wrong.
-    leaps = spikes(np.where(inspect_record(raw).sound, read, np.nan))
+    leaps = nonsense.spikes(np.where(inspect_record(raw).sound, read, np.nan))
     read[:, leaps] = np.nan
     record = inspect_record(replace(raw, table=raw.table.assign(**_by_reading(read))))
     dropped = {
@@ -207,22 +195,22 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     zero = no_zero(before)
     provenance: dict[str, Any] = {"pass": name, "direction": direction, "dropped": dropped}
     try:
-        check_channels(read, name)
-        check_ahead(foot_x, before, name)
+        nonsense.check_channels(read, name)
+        nonsense.check_ahead(foot_x, before, name)
         stretches = _free(foot_x, rig)
         if stretches:
             free = np.any([*stretches.values()], axis=0)
             for which, here in stretches.items():
                 stated = getattr(rig.passes, which)
-                check_free(which, stated, foot_x, before, here, name, raw.beam.si)
+                nonsense.check_free(which, stated, foot_x, before, here, name, raw.beam.si)
             zero = zero_of(foot_x, before, stretches, name)
-            check_units(before, stretches.values(), name)
+            nonsense.check_units(before, stretches.values(), name)
             values = before - zero.line
-            check_drift(zero.drift, values, name)
+            nonsense.check_drift(zero.drift, values, name)
             with np.errstate(over="ignore"):  # such numbers are refused later
                 known = np.nanstd(values[:, free], axis=1)
                 known = np.maximum(known, [rounding(row) for row in before])
-            check_object(values, known, direction, name, "free_before" in stretches)
+            nonsense.check_object(values, known, direction, name, "free_before" in stretches)
             provenance["free_noise"] = _by_reading(known.tolist())
     except InputError as error:
         fault = error

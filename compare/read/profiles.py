@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from analytic import Contour
-from analytic.problem.contours.kinds import CONTOURS
+from analytic.problem.named import CONTOURS
 from compare.read.quantities import Length, PerLength, Point, Points, Table, one_of_kinds
 
 

@@ -72,18 +72,14 @@ def read_measured(
     chosen = [one for way, one in sweeps if len(sweeps) == 1 or direction in (None, way)]
     if len(chosen) != 1:
         ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
-        raise InputError(
-            f"sweeps in {_called(source)}",
-            f"{len(sweeps)} ({ways})",
-            "one" if direction is None else f"one to the {direction}",
-            "choose its direction (--direction left, direction='left'), or split it",
-        )
+        allowed = "one" if direction is None else f"one to the {direction}"
+        remedy = "choose its direction (--direction left, direction='left'), or split it"
+        raise InputError(f"sweeps in {_called(source)}", f"{len(sweeps)} ({ways})", allowed, remedy)
     check_recorded(chosen[0], _called(source))
     return chosen[0]
 
 
 def check_recorded(readings: Readings, called: str) -> None:
-    """Refuse a channel without any number."""
     for name in CLAMP_READINGS:
         if not np.isfinite(readings.values(name)).any():
             remedy = "the channel was not recorded: leave this one out"
@@ -198,12 +194,9 @@ def renamed(
     found = table.assign(**named)
     missing = [name for name in sensed if name not in found]
     if missing and not table.columns.empty:
-        raise InputError(
-            f"columns of {called}",
-            ", ".join(map(str, table.columns[:20])),
-            f"at least {', '.join(sensed)}",
-            f"name them with --column {missing[0]}=COLUMN:{DIMENSIONS[missing[0]]}",
-        )
+        what = ", ".join(map(str, table.columns[:20]))
+        remedy = f"name them with --column {missing[0]}=COLUMN:{DIMENSIONS[missing[0]]}"
+        raise InputError(f"columns of {called}", what, f"at least {', '.join(sensed)}", remedy)
     return found, used, own
 
 

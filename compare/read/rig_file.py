@@ -76,12 +76,10 @@ def read_rig(path: Path) -> Rig:
     for name in SENSED:
         unit = rig.columns[name].unit
         if bool(unit) != in_units or in_units != rig.beam.build().si:
-            raise InputError(
-                file.place(["columns", name]),
-                f"unit {unit!r}" if unit else "without a unit",
-                "with units all four and [beam], or none of them",
-                'as { column = "Fx", unit = "mN" } beside length = "50 mm"',
-            )
+            what = f"unit {unit!r}" if unit else "without a unit"
+            allowed = "with units all four and [beam], or none of them"
+            remedy = 'as { column = "Fx", unit = "mN" } beside length = "50 mm"'
+            raise InputError(file.place(["columns", name]), what, allowed, remedy)
         if unit:
             unit_in_si(unit, DIMENSIONS[name], file.place(["columns", name, "unit"]))
         if rig.columns[name].gain == 0:

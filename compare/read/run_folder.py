@@ -61,12 +61,9 @@ def _sweeps(folder: Path) -> tuple[Path, Path]:
     sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
     if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
         there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
-        raise InputError(
-            "DIR",
-            f"{folder} ({there[:200]})",
-            "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
-            "make one: vibrissa run CASE --out DIR",
-        )
+        allowed = "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet"
+        remedy = "make one: vibrissa run CASE --out DIR"
+        raise InputError("DIR", f"{folder} ({there[:200]})", allowed, remedy)
     return folder / "analytic.parquet", sweeps[0]
 
 

@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeAlias, TypeVar
 
-from pydantic import AliasPath, BaseModel, Field
+from pydantic import AliasPath, BaseModel, BeforeValidator, Field
 
 from analytic import CASE_NAMES
 from compare.explain.budget import Budget
@@ -14,6 +14,8 @@ from compare.explain.split import Split
 from compare.read.run_folder import read_stored, read_stored_if_there
 
 _Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
+_Number: TypeAlias = Annotated[float, BeforeValidator(lambda x: math.nan if x is None else x)]
+"""As a file holds it, where null is no number."""
 
 
 def _at(*keys: str, **limits: Any) -> Any:  # noqa: ANN401  # as `Field`
@@ -101,7 +103,7 @@ class EngineOutcome:
     version: str = ""
     tuned: str = ""  # what was set for it, as it says itself
     trouble: str | None = None  # why there are no readings
-    rms: dict[str, float] | None = None  # from the closed form's readings
+    rms: dict[str, _Number] | None = None  # from the closed form's readings
     snap_off_apart: float | None = None  # less that of the closed form [L, rad]
     seconds_a_station: float | None = None  # of processor time
     agrees: bool = False

@@ -65,12 +65,9 @@ def read_space(
     table, used, _ = renamed(raw_table(path), columns, path.name, SENSED_IN_SPACE)
     held = Beam() if beam is None else beam
     if used and not held.si:
-        raise InputError(
-            f"units of {path.name}",
-            ", ".join(sorted(set(used.values()))),
-            "beside a vibrissa with units",
-            'give the case with units: length = "50 mm" and the like',
-        )
+        what = ", ".join(sorted(set(used.values())))
+        remedy = 'give the case with units: length = "50 mm" and the like'
+        raise InputError(f"units of {path.name}", what, "beside a vibrissa with units", remedy)
     upright = (0.0, 1.0, 0.0) if tangent is None else np.asarray(tangent)
     known = table[[*SENSED_IN_SPACE, *(name for name in _ALSO if name in table)]]
     provenance = {"units": used} if used else {}

@@ -35,6 +35,17 @@ from mujoco_models.settings import Settings
 from mujoco_models.user_model.names import ContactKind, OwnModel
 from mujoco_models.user_model.shipped import find_model
 
+PLACES = {
+    "flexural_rigidity": ("beam", "flexural_rigidity"),
+    "natural_curvature": ("beam", "natural_curvature"),
+    "tip_radius": ("beam", "tip_radius"),
+    "clamp_stiffness": ("support", "rotational_stiffness"),
+    "clamp_angle": ("support", "angle"),
+    "friction": ("contact", "friction"),
+    "engine": ("engine", "name"),
+}
+"""Where a case file has what is called otherwise elsewhere, as by a calibration."""
+
 
 class BeamTable(Table):
     length: Length = 1.0
@@ -60,8 +71,6 @@ class SupportTable(Table):
 
 
 class ContactTable(Table):
-    """How the vibrissa slides along the object."""
-
     friction: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
 
 
@@ -172,23 +181,15 @@ class CaseFile(Table):
         beam, contour, held = self.physics(folder)
         try:
             return Case(
-                beam,
-                contour,
-                self.way(),
-                self.name or name,
-                others=tuple(others),
-                **held._asdict(),
+                beam, contour, self.way(), self.name or name, others=tuple(others), **held._asdict()
             )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)
             if not is_mesh or not beam.si or "scale" in self.profile.model_fields_set:
                 raise
-            raise InputError(
-                "profile.scale",
-                "missing, so the mesh file's numbers are taken for metres",
-                'the size of their unit, scale = "1 mm" for millimetres',
-                f"add it ({error})",
-            ) from error
+            what = "missing, so the mesh file's numbers are taken for metres"
+            allowed = 'the size of their unit, scale = "1 mm" for millimetres'
+            raise InputError("profile.scale", what, allowed, f"add it ({error})") from error
 
 
 def _support(clamp: SupportTable, contact: ContactTable, weight: WeightTable) -> Support:

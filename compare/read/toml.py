@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, called
 from analytic.problem.files import regular_file
 
 KeyPlace: TypeAlias = Callable[[Sequence[str]], str]
@@ -33,7 +33,7 @@ class TomlFile:
     def read(cls, path: Path, what: str) -> "TomlFile":
         regular_file(path, what, _LARGEST)
         try:
-            text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")
+            text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
         except OSError as error:
             reason = error.strerror or type(error).__name__
             raise InputError(what, path, "readable", f"check the path ({reason})") from error
@@ -49,7 +49,8 @@ class TomlFile:
         except RecursionError as error:
             raise InputError(what, path, "fewer levels deep", "take brackets away") from error
         except ValueError as error:
-            raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
+            remedy = f"correct it: {error}; a text, or a number with a unit, stands in quotes"
+            raise InputError(what, path, "valid TOML", remedy) from error
         return cls(path, text, tables)
 
     def each(self, name: str) -> "list[TomlFile]":
@@ -85,7 +86,7 @@ class TomlFile:
             if not isinstance(stated, dict):
                 raise
             unit = " in SI units" if _WITH_UNIT.match(str(stated.get(key))) else ""
-            raise error.called(self.place([table, key] if key else [table]) + unit) from error
+            raise called(error, self.place([table, key] if key else [table]) + unit) from error
 
     def _line(self, keys: Sequence[str]) -> int | None:
         """The line that states a key: the last one with its name before which there is none."""

@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 from pydantic import ConfigDict, Field, model_validator
 
 from analytic import CLAMP_READINGS, Case, InputError
-from analytic.problem.errors import near
+from analytic.problem.errors import called, near
 from compare.read.complaints import shown
 from compare.read.quantities import EXAMPLES, Table
 from compare.read.toml import KeyPlace
@@ -62,7 +62,7 @@ def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Un
     try:
         return Uncertainties(inputs, noise, tuple(table.correlations))
     except InputError as error:
-        raise error.called(place(error.name.split("."))) from error
+        raise called(error, place(error.name.split("."))) from error
 
 
 def _input(name: str, said: InputTable, case: Case, place: KeyPlace) -> Input:

@@ -25,10 +25,10 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", r
 _LONGEST = 60  # characters of a unit
 _EXAMPLE = "check the unit, as in '50 mm'"
 # Nm and Nmm, as instruments write them; elsewhere Nm is a unit of yarn.
-_JOINED = re.compile(r"(?<!\w)([kmcµμ]?N)([mcµμ]?m)(?!\w)")
+_JOINED = re.compile(r"(?<!\w)([kmcµμ]?N)([mcµμ]?m)(?![^\W²³⁴])")
 # Names, products, quotients, parentheses, and powers of at most two digits, not raised again.
 _UNIT = re.compile(
-    r"(?:[^\W\d]\w*|[²³]|[()·*/ ]|(?:\^|\*\*) ?-?\d{1,2}(?!\d| ?\^| ?\*\*)|(?<![\d.])1(?= ?/))+"
+    r"(?:[^\W\d]\w*|[²³⁴°]|[()·⋅*/ ]|(?:\^|\*\*) ?-?\d{1,2}(?!\d| ?\^| ?\*\*)|(?<![\d.])1(?= ?/))+"
 )
 
 _IN_NAME = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # as in "Fx [mN]"
@@ -54,7 +54,8 @@ def unit_in_si(unit: str, dimension: str, called: str = "quantity") -> float:
     """How many SI units a unit is, as ``unit_in_si("mN mm", "N m")``."""
     found = _parsed(unit)
     if found is None or not found.is_compatible_with(dimension):
-        weighed = found is not None and (found * _registry()("m/s^2")).is_compatible_with(dimension)
+        wanted, fall = (_registry()(text).dimensionality for text in (dimension, "m/s^2"))
+        weighed = found is not None and found.dimensionality * fall == wanted
         remedy = "a gram of force is written gf" if weighed else _EXAMPLE
         raise _refused(unit.strip(), f"a unit of {dimension}", called, remedy)
     return found.to(dimension).magnitude

@@ -7,13 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.from_clamp.noise import (
-    SIGMAS,
-    correlation_of,
-    largest,
-    reading_noise,
-    resting_noise,
-)
+from analytic.from_clamp.noise import SIGMAS, correlation_of, largest, reading_noise, resting_noise
 
 NOTHING = 1e-100  # in any units: less is no load
 # Relative standard uncertainties of a level, times the root of the number of stations it is from:
@@ -97,12 +91,8 @@ def shown_noise(readings: Readings) -> Noise:
 def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:
     """The same relative noise for all readings."""
     if isinstance(level, bool | str) or not 0 <= level < 1:
-        raise InputError(
-            "noise",
-            level,
-            "'auto', or between 0 and 1",
-            "it is relative to each reading's largest magnitude",
-        )
+        remedy = "it is relative to each reading's largest magnitude"
+        raise InputError("noise", level, "'auto', or between 0 and 1", remedy)
     return dict.fromkeys(names, float(level))
 
 

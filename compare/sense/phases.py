@@ -50,7 +50,6 @@ class Classification:
         return reconstruct(self.readings)
 
     def __repr__(self) -> str:
-        """How many stations there are of each phase."""
         names, counts = np.unique(self.phase, return_counts=True)
         found = ", ".join(
             f"{n} {name or 'untrusted'}" for name, n in zip(names, counts, strict=True)

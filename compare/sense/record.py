@@ -130,12 +130,10 @@ def check_size(which: str, sweep: Readings) -> None:
     for name, unit in zip(SENSED, units(sweep.beam, SENSED).tolist(), strict=True):
         largest = np.abs(sweep.values(name)[sweep.trusted]).max(initial=0.0)
         if not largest < _LARGEST * unit:
-            raise InputError(
-                f"{name} of the {which} ({sweep.source})",
-                f"{largest:.3g}",
-                f"less than {_LARGEST:g} of the beam's units ({unit:.3g})",
-                "check the units, and the beam",
-            )
+            what = f"{largest:.3g}"
+            allowed = f"less than {_LARGEST:g} of the beam's units ({unit:.3g})"
+            remedy = "check the units, and the beam"
+            raise InputError(f"{name} of the {which} ({sweep.source})", what, allowed, remedy)
 
 
 def without_dropouts(readings: Readings) -> Readings:

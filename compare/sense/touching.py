@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
-from analytic.space.from_clamp.noise import component_noise, felt, least_force
+from analytic.space.from_clamp.reconstruct import component_noise, felt, least_force
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.sense.noise import checked_level
 from compare.sense.occurrence import Occurrence

@@ -163,7 +163,6 @@ def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> N
 
 
 def _order(found: Parted) -> list[str]:
-    """The parts by size, the unexplained last."""
     explained = [name for name in found.parts if name != "unexplained"]
     explained.sort(key=lambda name: -max(part.rms for part in found.parts[name].values()))
     return [*explained, "unexplained"]

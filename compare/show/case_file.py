@@ -9,21 +9,12 @@ from typing import Any
 from analytic import Calibration
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.quantities import QUANTITIES
+from compare.read.tables import PLACES
 from compare.read.units import in_si
 from compare.validate.stated import INPUTS
 
 CASE_MARK = "# Written by `vibrissa calibrate`"
 """The first line of a case file that is not a user's own."""
-
-_PLACES = {
-    "flexural_rigidity": ("beam", "flexural_rigidity"),
-    "natural_curvature": ("beam", "natural_curvature"),
-    "tip_radius": ("beam", "tip_radius"),
-    "clamp_stiffness": ("support", "rotational_stiffness"),
-    "clamp_angle": ("support", "angle"),
-    "friction": ("contact", "friction"),
-}
-"""Where a case file has what can be calibrated; what is not here is none of the case."""
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -37,9 +28,9 @@ def calibrated_case(
     """
     filled: dict[str, Any] = {name: _with_place(table, folder) for name, table in tables.items()}
     for name, one in found.found.items():
-        if name not in _PLACES:
+        if name not in PLACES:
             continue
-        table, key = _PLACES[name]
+        table, key = PLACES[name]
         changed = filled[table] = {**filled.get(table, {})}
         if one.value == float("inf"):  # a rigid clamp is stated by no stiffness
             changed.pop(key, None)

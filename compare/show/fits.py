@@ -14,7 +14,7 @@ from analytic.from_clamp.passes import Consistency
 from analytic.problem.quantities import QUANTITIES
 from analytic.space import ConvexBand, FittedBody
 from analytic.space.from_clamp.hull import volume
-from analytic.space.from_clamp.noise import COMPONENTS
+from analytic.space.from_clamp.reconstruct import COMPONENTS
 from compare.show.document import Block, Table, Text
 from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line
@@ -24,7 +24,6 @@ _CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
-    """What a terminal shows: what was found, and how far it is to be trusted."""
     passes, si = calibration.passes, calibration.case.beam.si
     if calibration.misfit_shows:
         yield Text(
@@ -67,7 +66,6 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
 
 
 def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block]:
-    """What a terminal shows: the parameters, and how far they are to be trusted."""
     unit = "m" if si else ""
     rows = [
         (*_interval(name, one), "" if name.startswith(_PLAIN) else unit)
@@ -101,7 +99,6 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
 
 
 def band_summary(found: ConvexBand, beam: Beam) -> Iterator[Block]:
-    """What a terminal shows: how much of the body is known, and how well."""
     inner, outer, cube = volume(found.inner), volume(found.outer), beam.length**3
     yield Text(
         f"{found.stations} contacts hold a convex body of {inner / cube:.3g} L^3 or more, and of "

@@ -8,13 +8,13 @@ import shlex
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from datetime import datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -30,7 +30,9 @@ from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPE
 
 if TYPE_CHECKING:
     from jinja2 import Template
+    from pandas import DataFrame
 
+Content: TypeAlias = "str | bytes | Document | Figure | Mapping[str, Any] | DataFrame"
 
 _PACKAGES = {"vibrissa-testbed": "vibrissa-testbed", "numpy": "NumPy", "scipy": "SciPy",
              "mujoco": "MuJoCo"}  # fmt: skip
@@ -64,33 +66,26 @@ def _template() -> "Template":
         svg=inline_svg,
         embedded=embedded,
         turning=turning,
-        code=_code,
+        # Words between back quotes are code.
+        code=lambda text: Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text)))),
     )
     return environment.get_template("document.html.j2")
-
-
-def _code(text: object) -> Markup:
-    """Text whose words between back quotes are code."""
-    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def colophon() -> dict[str, str]:
     """What is known of the process that makes a page."""
     program, *words = sys.argv
+    versions = [f"Python {platform.python_version()}"]
+    for package, name in _PACKAGES.items():
+        with suppress(PackageNotFoundError):
+            versions.append(f"{name} {version(package)}")
     found = {
         "command": "" if program in ("", "-c") else shlex.join([Path(program).name, *words]),
         "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z"),
-        "versions": ", ".join(_versions()),
+        "versions": ", ".join(versions),
         "commit": _commit(),
     }
     return {name: value for name, value in found.items() if value}
-
-
-def _versions() -> Iterator[str]:
-    yield f"Python {platform.python_version()}"
-    for package, name in _PACKAGES.items():
-        with suppress(PackageNotFoundError):
-            yield f"{name} {version(package)}"
 
 
 def _commit() -> str:
@@ -187,25 +182,35 @@ def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
     return _drawn(figure, "png", dpi=dots_per_inch, metadata={"Software": SOFTWARE})
 
 
-def save_figure(figure: Figure, path: Path) -> Path:
-    return write_whole(path, png(figure))
+def write_all(folder: Path, contents: Mapping[str, Content]) -> list[Path]:
+    """Write files by name, in the order given: all is drawn first, and each appears whole."""
+    made = {folder / name: as_file(content) for name, content in contents.items()}
+    for path in made:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    return [write_whole(path, content) for path, content in made.items()]
 
 
-def write_all(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
-    """Write files by name, each of them whole, in the order given."""
-    folder.mkdir(parents=True, exist_ok=True)
-    return [write_whole(folder / name, content) for name, content in contents.items()]
+def as_file(content: Content) -> str | bytes:
+    """A page, a picture, JSON of numbers by name, or a table as CSV; a text is as it is.
+
+    JSON has null for what is no number, dataclasses by field.
+    """
+    match content:
+        case str() | bytes():
+            return content
+        case Document():
+            return html(content)
+        case Figure():
+            return png(content)
+        case Mapping():
+            return to_json(content, indent=2, inf_nan_mode="null").decode()
+    return str(content.to_csv(index=False))
 
 
 def embedded(file: Path) -> str:
     """A picture file as an address that holds all of it."""
     content = base64.b64encode(file.read_bytes()).decode()
     return f"data:image/{file.suffix.removeprefix('.')};base64,{content}"
-
-
-def as_json(content: Mapping[str, Any]) -> str:
-    """What a JSON file of results holds: null for what is no number, dataclasses by field."""
-    return to_json(content, indent=2, inf_nan_mode="null").decode()
 
 
 def _drawn(figure: Figure, kind: str, **options: Any) -> bytes:  # noqa: ANN401

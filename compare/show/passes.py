@@ -21,7 +21,6 @@ _OFF = 0.02  # of the rigidity; less is within what most vibrissae are known to
 
 
 def passes_summary(passes: Sequence[Pass], found: Sequence[Repeats]) -> Iterator[Block]:
-    """What a terminal shows: what was not used and why, drift, and how far passes repeat."""
     rows, drifts = [], []
     for one in passes:
         lost = (f"{n} {name.replace('_', ' ')}" for name, n in one.dropped.items() if n)
@@ -169,7 +168,6 @@ def lag_summary(passes: Sequence[Pass], found: Lag | None, taken: float) -> Iter
 
 
 def with_lag(readings: Readings, found: Lag) -> Readings:
-    """A pass that remembers the lag."""
     return replace(readings, provenance={**readings.provenance, _LAG: asdict(found.way)})
 
 

@@ -10,17 +10,7 @@ from compare.explain.budget import Budget
 from compare.explain.parts import fitted_orders
 from compare.show import comparison_page as common
 from compare.show.budgets import convergence_picture, convergence_table
-from compare.show.document import (
-    Beside,
-    Block,
-    Document,
-    Film,
-    Picture,
-    Table,
-    Text,
-    Tile,
-    Verdict,
-)
+from compare.show.document import Beside, Block, Document, Film, Picture, Table, Text, Tile, Verdict
 from compare.show.figures import readings as drawn
 from compare.show.figures.geometry import geometry
 from compare.show.numbers import object_of, percent, sentence, short, uncertain, words

@@ -12,7 +12,7 @@ from compare.show.budgets import picture
 from compare.show.comparison_page import apart_table
 from compare.show.document import Block, Film, Text, tiles_line
 from compare.show.figures.readings import readings
-from compare.show.page import as_json, html, png, write_all
+from compare.show.page import Content, png, write_all
 from compare.show.plane_page import plane_document, plane_tiles, plane_verdict
 from compare.show.scene import SweepScene, solid_ply
 from compare.show.spatial_page import spatial_document, spatial_tiles, spatial_verdict
@@ -31,23 +31,24 @@ def write_report(
     All is drawn before the first file is written, each appears whole, ``report.html`` last. The
     body is of sweeps in space.
     """
-    contents: dict[str, str | bytes] = {} if budget is None else budget_files(budget)
+    contents: dict[str, Content] = {}
+    if budget is not None:
+        contents = {"budget.json": budget.to_dict(), "budget.png": png(picture(budget), 100)}
     if isinstance(comparison, SpatialComparison):
         scene = SweepScene.of(comparison.candidate, body)
         if len(scene.faces):
             contents["body.ply"] = solid_ply(scene.faces * comparison.candidate.beam.length)
         document = spatial_document(comparison, scene, budget, film)
     else:
-        contents["readings.png"] = png(readings(comparison))
+        contents["readings.png"] = readings(comparison)
         if comparison.validation is not None:
-            contents["validation.csv"] = comparison.validation.table.to_csv(index=False)
+            contents["validation.csv"] = comparison.validation.table
         planar = budget if isinstance(budget, Budget) else None
         document = plane_document(comparison, planar, film)
     for drawn in document.pictures():
         if len(drawn.figures) == 1:
-            contents |= {f"{drawn.name}.png": png(one) for one in drawn.figures.values()}
-    contents["comparison.json"] = as_json(comparison.to_dict())
-    contents["report.html"] = html(document)
+            contents |= {f"{drawn.name}.png": one for one in drawn.figures.values()}
+    contents |= {"comparison.json": comparison.to_dict(), "report.html": document}
     return write_all(folder, contents)[-1]
 
 
@@ -61,7 +62,3 @@ def summary_of(found: Comparison | SpatialComparison) -> Iterator[Block]:
         yield spatial_verdict(found)
         yield tiles_line(spatial_tiles(found))
     yield from apart_table(found)
-
-
-def budget_files(found: Parted) -> dict[str, str | bytes]:
-    return {"budget.json": as_json(found.to_dict()), "budget.png": png(picture(found), 100)}

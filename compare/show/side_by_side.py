@@ -18,15 +18,13 @@ from compare.show import style
 from compare.show.document import Block, Document, Items, Picture, Table, Text, Verdict, sections
 from compare.show.figures.over_foot import foot_label, key_below, shade_reference
 from compare.show.numbers import object_of, short
-from compare.show.page import as_json, html, png, write_all
+from compare.show.page import Content, write_all
 
 _EDGE = 0.97  # of the picture's width
 
 
 @dataclass(frozen=True)
 class SideBySide:
-    """Sweeps compared with a reference and with each other."""
-
     case: str  # what was swept
     outcomes: Sequence[EngineOutcome]  # in the order in which they were asked for
     against: dict[str, Comparison]  # each sweep against the reference, by its name
@@ -116,12 +114,10 @@ def _causes(found: Comparison) -> Iterator[str]:
 
 
 def write_side_by_side(found: SideBySide, folder: Path, called: str) -> list[Path]:
-    """Write the page, its numbers, and its first picture."""
     document = side_by_side_document(found)
     drawn = error_against_time(found) if _timed(found) else differences(found)
-    contents: dict[str, str | bytes] = {f"{called}.html": html(document)}
-    contents |= {f"{called}.json": as_json(found.to_dict()), f"{called}.png": png(drawn)}
-    return write_all(folder, contents)
+    contents: dict[str, Content] = {".html": document, ".json": found.to_dict(), ".png": drawn}
+    return write_all(folder, {f"{called}{end}": content for end, content in contents.items()})
 
 
 def side_by_side_document(found: SideBySide) -> Document:
@@ -130,11 +126,7 @@ def side_by_side_document(found: SideBySide) -> Document:
         f"{found.case} side by side: {', '.join(one.name for one in found.outcomes)}",
         f"{object_of(reference)}; {len(reference.table)} stations. Differences are root mean "
         "squares over the stations in contact, relative to each reading's largest magnitude.",
-        Verdict(
-            found.agree,
-            _tally(found),
-            "" if found.split is None else found.split.sentence,
-        ),
+        Verdict(found.agree, _tally(found), "" if found.split is None else found.split.sentence),
         sections(
             ("engines", "Sweeps", _sweeps(found)),
             ("split", "What the disagreement is made of", _split(found)),

@@ -5,7 +5,7 @@ from typing import overload
 
 from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.errors import require
-from analytic.problem.mirror import facing, leftward
+from analytic.problem.recorder import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import (
     Budget,
@@ -27,9 +27,7 @@ from mujoco_models.user_model.names import OwnModel
 
 @overload
 def measure_budget(
-    case: Case,
-    settings: Settings | None = None,
-    advance: Callable[[], None] = lambda: None,
+    case: Case, settings: Settings | None = None, advance: Callable[[], None] = lambda: None
 ) -> tuple[Budget, Mapping[str, Readings]]: ...
 
 
@@ -93,7 +91,12 @@ def measure_budget(
         if motion is not None:  # whose disagreement nothing splits
             raise InputError("motion", "given", "none for a budget in space", "take it at rest")
         chosen = SpatialSettings() if settings is None else settings
-        return _in_space(case, require("settings", chosen, SpatialSettings, _REMEDY), advance)
+        changes = changes_in_space(require("settings", chosen, SpatialSettings, _REMEDY))
+        tasks = {name: (simulate_space, case, one) for name, one in changes.items()}
+        with running(tasks, advance, SWEEPERS) as swept:
+            exact = solve_space(case)
+            runs = {name: one.result() for name, one in swept.items()}
+        return budget_in_space(exact, runs, changes), runs
     chosen = Settings() if settings is None else settings
     planar = require("settings", chosen, Settings, _REMEDY)
     if motion is None:
@@ -104,19 +107,8 @@ def measure_budget(
 _REMEDY = "take Settings in the plane, SpatialSettings in space"
 
 
-def _in_space(
-    case: SpatialCase, settings: SpatialSettings, advance: Callable[[], None]
-) -> tuple[Parted, Mapping[str, SpatialReadings]]:
-    changes = changes_in_space(settings)
-    tasks = {name: (simulate_space, case, one) for name, one in changes.items()}
-    with running(tasks, advance, SWEEPERS) as swept:
-        exact = solve_space(case)
-        runs = {name: one.result() for name, one in swept.items()}
-    return budget_in_space(exact, runs, changes), runs
-
-
 def budget_at_rest(
-    case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
+    case: Case, settings: Settings, advance: Callable[[], None]
 ) -> tuple[Budget, dict[str, Readings]]:
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))

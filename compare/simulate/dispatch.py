@@ -33,18 +33,20 @@ def simulate(
     `advance` is called after every station. `keep` is given the stations so far when MuJoCo's sweep
     ends early; other engines keep none.
     """
+    kinds = {"in space": isinstance(case, SpatialCase), "of a model": model, "in motion": motion}
+    kind = next((name for name, is_so in kinds.items() if is_so), "")
+    if kind and engine != MUJOCO:
+        remedy = "the others sweep at rest, in the plane"
+        raise InputError("engine", repr(engine), f"{MUJOCO} {kind}", remedy)
     if isinstance(case, SpatialCase):
-        _require_mujoco(engine, "in space")
         spatial = require("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
         if motion is not None:
             return simulate_motion(case, motion, spatial, advance, keep)
         return simulate_space(case, spatial, advance, keep)
     settings = require("settings", settings, Settings, "as Settings(segments=40)")
     if model is not None:
-        _require_mujoco(engine, "of a model")
         return simulate_model(case, model, motion, settings, advance, keep)
     if motion is not None:
-        _require_mujoco(engine, "in motion")
         return simulate_motion(case, motion, settings, advance, keep)
     if engine == MUJOCO:
         return simulate_sweep(case, settings, advance, keep)
@@ -53,12 +55,6 @@ def simulate(
 
     case.require_sweep(f"the engine {engine}")
     return checked_readings(find_engine(engine).sweep(case, settings, advance), case)
-
-
-def _require_mujoco(engine: str, what: str) -> None:
-    if engine != MUJOCO:
-        raise InputError("engine", repr(engine), f"{MUJOCO} {what}", "the others sweep at rest, in "
-                         "the plane")  # fmt: skip
 
 
 def at_rest(settings: Settings, motion: Motion | None) -> Settings:

@@ -38,15 +38,12 @@ _WAY = 1.5  # L; of the foot while the side of the vibrissa touches that circle
 
 @dataclass(frozen=True)
 class Fixed:
-    """What was written, and what it is."""
-
     files: tuple[Path, ...]
     edits: tuple[Edit | Insert, ...]
     followed: tuple[Edit | Insert, ...]  # those of them that the model asks for with the others set
     inspection: Inspection  # of the fixed model
 
     def lines(self) -> Iterator[str]:
-        """What was done, and what to expect."""
         names = " and ".join(str(file) for file in self.files)
         yield f"wrote {names}: {len(self.edits)} edits"
         for edit in filter(str, self.followed):
@@ -72,7 +69,8 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
         faults = inspection.faults
         # What a contact and a step are to be goes with EI, by orders where its unit was another.
         first = [] if done else [one for one in faults if one.subject == "EI" and one.edits]
-        wanted = dict.fromkeys(edit for fault in first or faults for edit in fault.edits)
+        edits = (edit for fault in first or faults for edit in fault.edits)
+        wanted = dict.fromkeys(edit.with_free_names(model) for edit in edits)
         new = [
             edit.of(model, now) if isinstance(edit, Edit) else edit
             for edit in wanted

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, Readings, solve_sweep
+from analytic.problem.reach import between, shifted
 from compare.explain.motion import (
     OPTIONAL,
     MotionBudget,
@@ -58,7 +59,11 @@ def budget_in_motion(
         sweeps = {name: (moved, changed) for name, (changed, moved) in of_model.items()}
     tasks = {name: (simulate, case, settings, *one) for name, one in sweeps.items()}
     rest = (sweep_as_means, case, resting, motion.average)
-    runs = _swept({**tasks, "rest": rest}, advance)
+    runs: dict[str, Readings] = {}
+    with running({**tasks, "rest": rest}, advance) as swept:
+        for name, sweep in swept.items():
+            with suppress(*[DivergedError] * (name in OPTIONAL)):
+                runs[name] = sweep.result()
     if model is not None:
         no_ours = "ours" in sweeps and "ours" not in runs
         if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
@@ -78,19 +83,7 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
         flexural_rigidity=by_its_clamp(found),
         natural_curvature=found.natural_curvature,
     )
-    return replace(case.shifted(), beam=beam)
-
-
-def _swept(
-    sweeps: Mapping[str, tuple[Any, ...]], advance: Callable[[], None]
-) -> dict[str, Readings]:
-    """All sweeps, but for optional ones that diverge."""
-    with running(sweeps, advance) as swept:
-        runs = {}
-        for name, sweep in swept.items():
-            with suppress(*[DivergedError] * (name in OPTIONAL)):
-                runs[name] = sweep.result()
-        return runs
+    return replace(shifted(case), beam=beam)
 
 
 def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
@@ -103,7 +96,7 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
         return simulate_sweep(case, settings)
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
-    found = simulate_sweep(case.between(first, last, (stations - 1) * _PARTS + 1), settings)
+    found = simulate_sweep(between(case, first, last, (stations - 1) * _PARTS + 1), settings)
     table = found.table.iloc[::_PARTS].reset_index(drop=True)
     places = np.arange(len(found.table))
     offsets = average * _PARTS * np.linspace(-0.5, 0.5, _PARTS + 1)

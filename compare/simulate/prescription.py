@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import Case, InputError, Readings
-from analytic.problem.mirror import leftward
+from analytic.problem.recorder import leftward
 from compare.explain.parts import Shared
 from compare.measure.disagreement import rms
 from mujoco_models import simulate_sweep

@@ -29,8 +29,6 @@ _SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
 
 @dataclass(frozen=True)
 class Followed:
-    """Settings for a wanted error, and what came of them."""
-
     target: float  # the wanted error
     settings: Settings
     predicted: float  # the error: the largest rms of the three readings
@@ -48,7 +46,6 @@ class Followed:
 def follow_advice(
     case: Case, found: Budget, runs: Mapping[str, Readings], target: float
 ) -> Followed:
-    """Choose settings, sweep with them, and measure."""
     settings, predicted = advised(found, runs, target)
     made = simulate_sweep(case, settings)
     seconds = float(made.provenance["seconds"]) / len(made.table)
@@ -95,8 +92,6 @@ def advised(found: Budget, runs: Mapping[str, Readings], target: float) -> tuple
 
 @dataclass(frozen=True)
 class Fastest:
-    """The fastest motion with a wanted error, and what was measured of it."""
-
     target: float  # the wanted error: of the worst reading, rms relative to its largest magnitude
     speed: float  # of the fastest sweep with at most that [L/T1]
     error: float  # of that sweep; CPU time
@@ -106,13 +101,11 @@ class Fastest:
 
 
 def find_fastest(
-    exact: Readings,
-    runs: Mapping[str, Readings],
-    move: Callable[[float], Readings],
-    target: float,
+    exact: Readings, runs: Mapping[str, Readings], move: Callable[[float], Readings], target: float
 ) -> Fastest:
     """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
-    swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
+    known = [runs[name] for name in THREE_SPEEDS if name in runs]
+    swept = {float(one.provenance["motion"]["speed"]): one for one in known}
     error = {speed: _error(exact, readings) for speed, readings in swept.items()}
     at_rest = _rms(exact, runs["rest"])
     slowest, quickest = _SPEEDS
@@ -168,7 +161,3 @@ def _rms(exact: Readings, candidate: Readings) -> float:
         return largest_rms(exact, candidate)
     except InputError:  # no station in common
         return math.inf
-
-
-def _speed(readings: Readings) -> float:
-    return float(readings.provenance["motion"]["speed"])

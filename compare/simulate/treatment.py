@@ -193,7 +193,6 @@ def straightened(sensor: Sensed) -> tuple[Edit, ...]:
 
 
 def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
-    """A sensor's site where the vibrissa begins."""
     return (Edit("site", (("pos", _place(sensor.clamp, length)),), (sensor.site,)),)
 
 
@@ -209,10 +208,7 @@ def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     if not found.body:
         return ()
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
-    return (
-        _site(found, f"clamp-{words[0]}"),
-        Insert(f"<sensor>{names}</sensor>"),
-    )
+    return (_site(found, f"clamp-{words[0]}"), Insert(f"<sensor>{names}</sensor>"))
 
 
 def _site(found: MeasuredBeam, name: str) -> Insert:

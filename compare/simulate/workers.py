@@ -98,9 +98,7 @@ def _has_server() -> bool:
 
 @contextmanager
 def running(
-    tasks: Mapping[K, tuple[Any, ...]],
-    advance: Callable[[], None],
-    preload: tuple[str, ...] = (),
+    tasks: Mapping[K, tuple[Any, ...]], advance: Callable[[], None], preload: tuple[str, ...] = ()
 ) -> Iterator[Mapping[K, ProcessFuture[Any]]]:
     """Tasks that workers do while their leader goes on, each a function and what it takes.
 

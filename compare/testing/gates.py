@@ -1,22 +1,17 @@
 """Agreement, and a sound model, as assertions for users' own tests."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from pathlib import Path
+from typing import Literal
 
 from analytic import Beam, InputError, Readings
 from analytic.problem.errors import require
 from analytic.space import SpatialReadings
+from compare.align.frames import Frame
 from compare.comparison import Comparison, SpatialComparison, compare
+from compare.explain.budget import Budget
 from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.show.verdict import why
 from mujoco_models import inspect_model
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from compare.align.frames import Frame
-    from compare.explain.budget import Budget
 
 
 def assert_agreement(

@@ -81,13 +81,13 @@ class Sensitivities:
         )
 
 
-def sensitivities(case: Case, stated: Uncertainties, samples: int, seed: int = 0) -> Sensitivities:
+def sensitivities(case: Case, stated: Uncertainties, samples: int) -> Sensitivities:
     """Solve the case with its inputs changed, one by one and all at once."""
     nominal = swept(case)
     slopes = [_slope(case, name, nominal) for name in stated.inputs]
     shape = (len(slopes), *nominal.readings.shape)
     readings = np.array([slope for slope, _ in slopes]).reshape(shape)
-    draws = stated.draws(samples, np.random.default_rng(seed)) if slopes else np.zeros((0, 0))
+    draws = stated.draws(samples, np.random.default_rng(0)) if slopes else np.zeros((0, 0))
     changed, drawn, failure = [], [], None
     for draw in draws.tolist():
         errors = {n: possible(case, n, x) for n, x in zip(stated.inputs, draw, strict=True)}
@@ -99,12 +99,9 @@ def sensitivities(case: Case, stated: Uncertainties, samples: int, seed: int = 0
         changed.append(one.readings - nominal.readings)
         drawn.append([*errors.values()])
     if len(draws) - len(drawn) > _MOST_FAILED * len(draws):
-        raise InputError(
-            "[uncertainty]",
-            f"so large that {len(draws) - len(drawn)} of {len(draws)} cases cannot be solved",
-            "of cases that can",
-            f"state less, or check the units ({failure})",
-        )
+        what = f"so large that {len(draws) - len(drawn)} of {len(draws)} cases cannot be solved"
+        remedy = f"state less, or check the units ({failure})"
+        raise InputError("[uncertainty]", what, "of cases that can", remedy)
     drawn_ = np.array(drawn).reshape(len(drawn), len(slopes))
     standard = stated.standard
     return Sensitivities(

@@ -119,19 +119,14 @@ class Uncertainties:
         normal = [n for n, x in self.inputs.items() if x.distribution == "normal"]
         for first, second, coefficient in self.correlations:
             if first == second or not {first, second} <= set(normal) or not -1 <= coefficient <= 1:
-                raise InputError(
-                    "uncertainty.correlations",
-                    f"[{first}, {second}, {coefficient}]",
-                    "two inputs with a standard uncertainty, and a number from -1 to 1",
-                    f"those are {', '.join(normal) or 'none'}",
-                )
+                what = f"[{first}, {second}, {coefficient}]"
+                allowed = "two inputs with a standard uncertainty, and a number from -1 to 1"
+                remedy = f"those are {', '.join(normal) or 'none'}"
+                raise InputError("uncertainty.correlations", what, allowed, remedy)
         if np.linalg.eigvalsh(self.correlation).min(initial=0.0) < -1e-9:  # rounding
-            raise InputError(
-                "uncertainty.correlations",
-                [list(x) for x in self.correlations],
-                "such that errors can have them all",
-                "make them smaller",
-            )
+            given = [list(x) for x in self.correlations]
+            allowed = "such that errors can have them all"
+            raise InputError("uncertainty.correlations", given, allowed, "make them smaller")
 
     @property
     def standard(self) -> Floats:

@@ -10,7 +10,7 @@ from pydantic import ConfigDict
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.correlated import estimate
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import require
 from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance
@@ -18,7 +18,7 @@ from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off, rms
 from compare.measure.measurement import Measurement
 from compare.sense.noise import shown_noise
-from compare.validate.sensitivities import Sensitivities, sensitivities
+from compare.validate.sensitivities import sensitivities
 from compare.validate.spread import NOISE, NUMERICS, SECOND_ORDER, Spread
 from compare.validate.stated import Uncertainties
 
@@ -205,15 +205,18 @@ def validate(
     reach = sensitivities(case, stated, samples)
     whole_table = found.alignment.table
     table = whole_table.iloc[:: -(-len(whole_table) // _MOST) or 1].reset_index(drop=True)
-    near, unknown, here = _uncounted(found, table, reach, stated, window)
+    here = reach.at(table["at"].to_numpy())
+    sweep = float(np.ptp(found.reference.values("foot_x")))
+    place = float(np.sqrt(reach.snap_off @ stated.correlation @ reach.snap_off))
+    widened = window + _SNAP * place / sweep
+    near = before_snap_off(found.reference, here.foot_x, found.snap_off, widened)
+    unknown = np.isnan(here.readings).any(axis=(0, 1)) & ~near
     kept = ~near & ~unknown
     if not kept.any():
-        raise InputError(
-            "stations of the validation",
-            f"none of {len(table)} compared",
-            "some away from the snap-off whose sensitivity is known",
-            "state smaller uncertainties, or add stations",
-        )
+        what = f"none of {len(table)} compared"
+        allowed = "some away from the snap-off whose sensitivity is known"
+        remedy = "state smaller uncertainties, or add stations"
+        raise InputError("stations of the validation", what, allowed, remedy)
     table = table[kept].reset_index(drop=True)
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     error = _values(table, "reference") - _values(table, "candidate")
@@ -255,24 +258,6 @@ def validate(
         },
         _table(table, error, spread),
     )
-
-
-def _uncounted(
-    found: Measurement,
-    table: pd.DataFrame,
-    reach: Sensitivities,
-    stated: Uncertainties,
-    window: float,
-) -> tuple[Booleans, Booleans, Sensitivities]:
-    """Stations next to the snap-off, those without a sensitivity, and what is known at all."""
-    foot_x = table["at"].to_numpy()
-    here = reach.at(foot_x)
-    unknown = np.isnan(here.readings).any(axis=(0, 1))
-    sweep = float(np.ptp(found.reference.values("foot_x")))
-    place = float(np.sqrt(reach.snap_off @ stated.correlation @ reach.snap_off))
-    widened = window + _SNAP * place / sweep
-    near = before_snap_off(found.reference, foot_x, found.snap_off, widened)
-    return near, unknown & ~near, here
 
 
 def _values(table: pd.DataFrame, which: Side) -> Floats:
@@ -331,12 +316,8 @@ def _spread(
     stacked = np.concatenate([part.reshape(len(part), differences) for part in modes])
     largest = max(float(np.abs(stacked).max(initial=0.0)), float(level.max()))
     if not largest < _LARGEST:
-        raise InputError(
-            "[uncertainty]",
-            f"{largest:.3g} of a reading's largest magnitude",
-            f"less than {_LARGEST:g}",
-            "check the units",
-        )
+        what, remedy = f"{largest:.3g} of a reading's largest magnitude", "check the units"
+        raise InputError("[uncertainty]", what, f"less than {_LARGEST:g}", remedy)
     correlation = np.eye(len(stacked))
     correlation[:inputs, :inputs] = stated.correlation
     names = (*stated.inputs, *[NUMERICS] * len(numerics), *[SECOND_ORDER] * len(second))

@@ -22,8 +22,6 @@ _Clamp: TypeAlias = Literal["naive", "second-order"]
 
 @dataclass(frozen=True)
 class PeerRow:
-    """One number of a case that a peer publishes."""
-
     peer: str
     case: str
     what: str

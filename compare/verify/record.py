@@ -40,7 +40,6 @@ class Row:
 
     @property
     def difference(self) -> float:
-        """Of ours, relative to theirs."""
         return abs(self.ours - self.theirs) / abs(self.theirs)
 
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analytic import Case, find_events, named_case, solve_sweep, turn_back
-from compare.show.page import save_figure
+from compare.show.page import write_all
 from compare.show.style import FAINT, GREEN, GREY, INK, SMALL, YELLOW
 
 _COEFFICIENTS = np.linspace(0, 0.6, 13)
@@ -68,4 +68,5 @@ def _there_and_back(ax: Axes, case: Case, turns: tuple[float, ...], reading: str
 
 
 if __name__ == "__main__":
-    save_figure(hysteresis(), Path(sys.argv[1]))
+    out = Path(sys.argv[1])
+    write_all(out.parent, {out.name: hysteresis()})

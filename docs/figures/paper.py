@@ -25,7 +25,7 @@ from compare.read.case import load_job
 from compare.show import style
 from compare.show.figures.geometry import at_equal_scales, reconstruction
 from compare.show.figures.over_foot import foot, unit
-from compare.show.page import save_figure
+from compare.show.page import write_all
 
 _A, _B = style.PHASE_COLOURS["tip"], style.PHASE_COLOURS["tangent"]
 
@@ -152,6 +152,6 @@ def _error(ax: Axes, readings: Readings) -> None:
 
 if __name__ == "__main__":
     given, folder = load_job(sys.argv[1]).case, Path(sys.argv[2])
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, figure in paper_figures(given, solve_sweep(given)).items():
-        print(save_figure(figure, folder / f"{name}.png"))
+    figures = paper_figures(given, solve_sweep(given))
+    for path in write_all(folder, {f"{name}.png": one for name, one in figures.items()}):
+        print(path)

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from compare.show.page import save_figure
+from compare.show.page import write_all
 from compare.show.style import FAINT, GREY, PHASE_COLOURS, PHASE_NAMES, SMALL
 
 _PHASES = ("tip", "tangent")
@@ -113,4 +113,5 @@ def _bars(ax: Axes, table: pd.DataFrame) -> None:
 
 
 if __name__ == "__main__":
-    save_figure(quasi_static(pd.read_csv(sys.argv[1])), Path(sys.argv[2]))
+    out = Path(sys.argv[2])
+    write_all(out.parent, {out.name: quasi_static(pd.read_csv(sys.argv[1]))})

@@ -15,8 +15,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from engines.agreement import State, hinges
-from engines.surface import Surface
+from engines.agreement import State, Surface, hinges
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.obstacles.primitive import Primitive
 from mujoco_models.obstacles.prism import Prism

@@ -19,9 +19,9 @@ from scipy.optimize import brentq
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.rest import first_touch
+from engines.agreement import Surface
 from engines.exudyn.cable import Cable, LostError
 from engines.stations import Row, free_row
-from engines.surface import Surface
 from mujoco_models.beams.vibrissa import Vibrissa
 
 _STILL = 1e-7  # EI/L^2; the force along the contour that is none
@@ -97,7 +97,8 @@ class CableOnContour:
             elif not cable.held.slides and self._lies_alongside(t):
                 cable.let_slide(1.0, cable.held.point)
             else:
-                return t if self._pushes(t) else None
+                # The object pushes: an object does not pull.
+                return t if float(self._clamp[:2] @ self._outward(t)) <= 0 else None
         raise LostError  # neither of the two
 
     def _root(self, t: float) -> float | None:
@@ -162,10 +163,6 @@ class CableOnContour:
     def _outward(self, t: float) -> Floats:
         alpha = float(self._line.at(np.array(t)).alpha)
         return np.array([np.sin(alpha), -np.cos(alpha)])
-
-    def _pushes(self, t: float) -> bool:
-        """Whether the object pushes: an object does not pull."""
-        return float(self._clamp[:2] @ self._outward(t)) <= 0
 
     def _lies_alongside(self, t: float) -> bool:
         """Whether a cable that is held at its tip comes out of the object."""

@@ -13,31 +13,47 @@ import pandas as pd
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
+from engines.found import installed
 from engines.precision.resolution import across, chance_of_loss, covariance, force_deviation
 from engines.precision.state import Evaluate, Evaluated, State
 from mujoco_models.model.model import BeamModel
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.sweep import set_out
 
-STIFFNESSES = (1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
-"""Contact stiffnesses that are looked at, unless others are named [EI/L^3]."""
+_WARP, _MJX = "mujoco-warp>=4.0,<5", "mujoco-mjx>=3.17,<5"
+
+
+def evaluators() -> dict[str, Evaluate]:
+    """All that are installed; raises InputError if none is, or one of a wrong version."""
+    (warp, no_warp), (mjx, no_mjx) = installed(_WARP), installed(_MJX)
+    for name, version, trouble in (("mujoco-warp", warp, no_warp), ("mujoco-mjx", mjx, no_mjx)):
+        if version is not None and trouble is not None:
+            raise InputError(name, version, "one that --float32 knows", trouble)
+    found: dict[str, Evaluate] = {}
+    if warp is not None:
+        from engines.precision.warp import evaluate
+
+        found[f"MuJoCo Warp {warp}"] = evaluate
+    if mjx is not None:
+        from engines.precision.mjx import in_double, in_single
+
+        found[f"MJX {mjx}"] = in_single
+        found[f"MJX {mjx}, 64 bits"] = in_double
+    if not found:
+        raise InputError("--float32", "given", "for MuJoCo Warp or MJX", f"{no_warp}, or {no_mjx}")
+    return found
 
 
 def gate(
     case: Case,
     settings: Settings,
     evaluators: Mapping[str, Evaluate],
-    stiffnesses: Sequence[float] = STIFFNESSES,
+    stiffnesses: Sequence[float],
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Have MuJoCo's states at rest evaluated, for several contact stiffnesses."""
     if not settings.elsewhere:
-        raise InputError(
-            "beam for --float32",
-            repr(settings.beam),
-            "'chain' in the plane, on linear springs",
-            "take --beam chain",
-        )
+        allowed = "'chain' in the plane, on linear springs"
+        raise InputError("beam for --float32", repr(settings.beam), allowed, "take --beam chain")
     # The mirror image has the same numbers, but for the sign of x.
     leftward = case.mirrored() if case.foot_x[-1] > case.foot_x[0] else case
     states, expected = [], []

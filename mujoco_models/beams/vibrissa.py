@@ -6,9 +6,8 @@ import numpy as np
 
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.support import Support
-from analytic.problem.unloaded import Unloaded
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # of a piece of a cell, where it is smooth
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam

@@ -5,8 +5,8 @@ from typing import Any
 
 import mujoco
 
-from analytic.problem.mirror import leftward
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import leftward
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.dynamics.record import StationMeans

@@ -13,7 +13,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import leftward
+from analytic.problem.recorder import leftward
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.beams.vibrissa import Vibrissa

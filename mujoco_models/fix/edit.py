@@ -1,10 +1,13 @@
 """What is to be changed in a model: attributes of its elements, and elements that it lacks."""
 
+import re
 from dataclasses import dataclass, replace
+from itertools import chain, count
 
 import mujoco
 
 _COUNTS = {"joint": "njnt", "site": "nsite"}  # of what is put between others
+_NAMED = re.compile(r'\b(name|site|joint)="([^"]*)"')  # by what is put in
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,11 @@ class Edit:
         own = (n for n in self.numbers if n not in added)
         return replace(self, numbers=tuple(n - sum(i < n for i in added) for n in own))
 
+    def with_free_names(self, model: mujoco.MjModel) -> "Edit":
+        """On a site that is put in, by the name that it gets."""
+        renamed = ((n, _free(v, model) if n == "site" else v) for n, v in self.attributes)
+        return replace(self, attributes=tuple(renamed))
+
     def __str__(self) -> str:
         return " ".join(f'{name}="{value}"' for name, value in self.attributes if value)
 
@@ -39,8 +47,18 @@ class Insert:
     text: str
     body: int | None = None  # its number in the compiled model
 
+    def with_free_names(self, model: mujoco.MjModel) -> "Insert":
+        """With names that nothing in the model has, as another vibrissa's sensor may."""
+        text = _NAMED.sub(lambda x: f'{x[1]}="{_free(x[2], model)}"', self.text)
+        return replace(self, text=text)
+
     def __str__(self) -> str:
         return self.text
+
+
+def _free(name: str, model: mujoco.MjModel) -> str:
+    taken = bytes(model.names).decode().split("\0")
+    return next(x for x in chain([name], (f"{name}-{i}" for i in count(2))) if x not in taken)
 
 
 def number(x: float) -> str:

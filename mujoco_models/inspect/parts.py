@@ -60,7 +60,7 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     chains = [*_chains(model), *rods]
     if names.foot is not None:
         known = [model.body(i).name for i in range(model.nbody)]
-        foot = _named("--foot", names.foot, "body", known)
+        foot = _named("foot", names.foot, "body", known)
         chains = [chain for chain in chains if foot in _holders(model, chain[0])]
     if asked is not None:
         bodies = set(model.body_weldid[model.geom_bodyid[asked]].tolist())
@@ -98,10 +98,10 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
         bodies |= {*holders_of(model, holders[-1])}
     added = (None, None) if names.site is None else (FORCE, TORQUE)
     force, torque = (
-        _sensor(model, option, name, kind, bodies)
-        for option, name, kind in (
-            ("--force", names.force or added[0], mujoco.mjtSensor.mjSENS_FORCE),
-            ("--torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
+        _sensor(model, word, name, kind, bodies)
+        for word, name, kind in (
+            ("force", names.force or added[0], mujoco.mjtSensor.mjSENS_FORCE),
+            ("torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
         )
     )
     plugin = bool(_plugins(model)[chain[0]])
@@ -257,22 +257,23 @@ def _geoms(model: mujoco.MjModel, text: str) -> list[int]:
     found: set[int] = set()
     for pattern in filter(None, (part.strip() for part in text.split(","))):
         fitting = {i for i, name in enumerate(known) if fnmatchcase(name, pattern)}
-        found |= fitting or {_named("--geoms", pattern, "geom", known)}
+        found |= fitting or {_named("geoms", pattern, "geom", known)}
     return sorted(found)
 
 
 def _sensor(
     model: mujoco.MjModel,
-    option: str,
+    word: str,
     name: str | None,
     kind: mujoco.mjtSensor,
     bodies: set[int],
 ) -> int | None:
-    word, known = option.removeprefix("--"), [model.sensor(i).name for i in range(model.nsensor)]
+    called, known = f"{word} sensor", [model.sensor(i).name for i in range(model.nsensor)]
     if name is not None:
-        sensor = _named(option, name, "sensor", known)
+        sensor = _named(called, name, "sensor", known)
         if model.sensor_type[sensor] != kind:
-            raise InputError(option, repr(name), f"a {word} sensor", f"it is no <{word}>")
+            what = f"{called} of the model"
+            raise InputError(what, repr(name), f"a {called}", f"it is no <{word}>")
         return sensor
     found = [
         int(i)
@@ -281,15 +282,16 @@ def _sensor(
     ]
     if len(found) > 1:
         shown = ", ".join(repr(known[i]) for i in found[:6])
-        raise InputError("model", f"with {len(found)} {word} sensors ({shown})",
-                         "with one at the clamp", f"say which with {option}")  # fmt: skip
+        raise InputError("model", f"with {len(found)} {called}s ({shown})",
+                         "with one at the clamp", f"say which with --{word}")  # fmt: skip
     return found[0] if found else None
 
 
-def _named(option: str, name: str, what: str, known: list[str]) -> int:
+def _named(part: str, name: str, what: str, known: list[str]) -> int:
     if name in known:
         return known.index(name)
     names = [one for one in known if one]
     if not names:
-        raise InputError(option, repr(name), f"the name of a {what}", "the model names none")
-    raise unknown(option, name, names[:12], more=f": the model's {what} names")
+        part, allowed = f"{part} of the model", f"the name of a {what}"
+        raise InputError(part, repr(name), allowed, "the model names none")
+    raise unknown(f"{part} of the model", name, names[:12], more=f": the model's {what} names")

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import Contacts

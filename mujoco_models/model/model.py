@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import turned
 from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT, Beam

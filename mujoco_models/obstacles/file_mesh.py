@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull, KDTree
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
-from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.faceted import Faceted, add_hull, own_ends, touchable

@@ -1,7 +1,7 @@
 """From a case and settings to an obstacle."""
 
 from analytic.problem.case import Case
-from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.primitive import Primitive
 from mujoco_models.obstacles.prism import Prism

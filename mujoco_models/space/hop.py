@@ -12,7 +12,7 @@ from itertools import chain
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.feature import Feature
+from analytic.space.problem.bodies.body import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.space.balance import State
 from mujoco_models.space.model import SpaceModel

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.feature import Feature
+from analytic.space.problem.bodies.body import Feature
 from mujoco_models.space.model import SpaceModel, Touch
 
 _STAYS = 1e-8

@@ -7,7 +7,7 @@ turns the beam by little: a beam 1e-4 L before its fold stays, one as far beyond
 
 import numpy as np
 
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics

@@ -8,7 +8,7 @@ does not confirm, its own balance corrects.
 
 import numpy as np
 
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.newton import Newton

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans
 from analytic.problem.case import Case
-from analytic.problem.poses import Pose
+from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance

@@ -20,7 +20,7 @@ from analytic import (
     solve_sweep,
     solve_sweeps,
 )
-from analytic.solver.integrals import elliptic_integrals
+from analytic.solver.elastica import elliptic_integrals
 from compare.explain.budget import controlled_changes
 from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings, simulate_sweep

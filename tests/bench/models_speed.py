@@ -13,7 +13,7 @@ from rich.table import Table
 
 from analytic import Case, Readings, Sweep, circle, named_case, solve_sweep
 from compare import compare
-from compare.show.page import save_figure
+from compare.show.page import write_all
 from engines import list_engines
 from mujoco_models import Settings, available_beams, simulate_sweep
 
@@ -81,8 +81,8 @@ def engines(quick: bool) -> None:
             table.add_row(name, str(n), f"{took:.1f}", f"{worst:.1e}", str(unsettled))
     console.print(table)
     if "exudyn" in runs and not quick:
-        PLOT.parent.mkdir(exist_ok=True)
-        console.print(f"wrote {save_figure(plot(runs), PLOT)}")
+        (path,) = write_all(PLOT.parent, {PLOT.name: plot(runs)})
+        console.print(f"wrote {path}")
 
 
 def _timed(exact: Readings, produce: Callable[[], Readings]) -> tuple[float, float, int]:

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from analytic import Case, Sweep, named_case
-from analytic.problem.poses import along_x
+from analytic.problem.clamp_path import along_x
 from mujoco_models import Settings
 from mujoco_models.model.model import BeamModel
 from mujoco_models.sweep.sweep import set_out

@@ -12,6 +12,6 @@ def undrawn(monkeypatch):
     """
     monkeypatch.setattr("compare.show.animation.plane.write_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.document.Picture.figures", {})
-    monkeypatch.setattr("compare.show.report.readings", lambda *_: None)
+    monkeypatch.setattr("compare.show.report.readings", lambda *_: b"")
     monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.report.png", lambda *_: b"")

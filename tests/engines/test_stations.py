@@ -3,8 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from analytic import Case, Sweep, circle
+from analytic import Case, InputError, Sweep, circle
 from engines.stations import Row, sweep_stations
 
 CASE = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(20))
@@ -48,3 +49,11 @@ def test_no_state_at_all_is_said_in_other_words():
     _, found = swept(None)
     (reason,) = found.provenance["unsettled"]
     assert "no neighbour" in reason and found.provenance["events"]["snap_off"] is None
+
+
+def test_what_is_no_state_is_named():
+    assert Row(force_x=np.array([-0.5])).force_x == -0.5
+    with pytest.raises(InputError, match=r"Row.moment_z = \[1, 2\]: must be a number"):
+        Row(moment_z=[1, 2])
+    with pytest.raises(InputError, match="what `at` returned = a tuple: must be a Row"):
+        swept((0.0, 0.0, 0.0))

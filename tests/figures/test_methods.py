@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
-from analytic.from_clamp.earlier.methods import NAMES, OWN
+from analytic.from_clamp.earlier import NAMES, OWN
 from compare.read.case import load_job
 from docs.figures.methods import (
     CONDITIONS,

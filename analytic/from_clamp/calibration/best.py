@@ -1,7 +1,7 @@
 """The numbers that fit readings best, for the noise that these show."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
@@ -9,13 +9,15 @@ from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured
 from analytic.from_clamp.calibration.unknowns import LAG, OFFSET
 from analytic.from_clamp.correlated import Estimated, estimate
-from analytic.from_clamp.jitter import foot_jitter
+from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
 from analytic.from_clamp.passes import ROUNDING, alike_by_chance
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError
 
-AnyFit = TypeVar("AnyFit", bound=LeastSquaresFit)
+_CLEARLY = 4.0  # standard deviations; by chance once in 10^4 sweeps
+_JITTER_ROUNDS = 100  # of expectation and maximum: 1e-3 of the sizes
+
 
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
@@ -28,7 +30,42 @@ _REFINED = 2  # steps from plain least squares to those that know the noise
 _NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
 
 
-def fitted_to_noise(fit: AnyFit, stated: bool) -> tuple[AnyFit, Floats, float, Estimated]:
+def foot_jitter(
+    left: Floats, slopes: Floats, rows: Sequence[int] | None = None
+) -> tuple[float, Floats]:
+    """Standard deviation of the foot's place, and what each reading has of its own.
+
+    The first is 0 if it does not stand out. By the EM algorithm on differences between neighbouring
+    stations, in which what is smooth cancels. Without jitter the products of two readings'
+    differences scatter about zero. Of what a fit leaves over some sizes, and the slopes over the
+    foot position over the same, each shape (n, readings); `rows` by pass, by default of one.
+    """
+    between = np.cumsum([len(left)] if rows is None else rows)[:-1] - 1  # passes: no steps
+    steps = np.delete(np.diff(left, axis=0) / np.sqrt(2), between, axis=0)
+    ways = np.delete((slopes[1:] + slopes[:-1]) / 2, between, axis=0)
+    own = (np.median(np.abs(steps), axis=0) / MEDIAN_OF_NORMAL) ** 2
+    one, other = np.triu_indices(len(own), 1)
+    sizes = np.sqrt(own)
+    if not sizes.all():
+        return 0.0, sizes
+    together = ways[:, one] * ways[:, other] / (sizes[one] * sizes[other])
+    products = steps[:, one] * steps[:, other] / (sizes[one] * sizes[other])
+    weight = np.sum(together**2)
+    if not np.sum(together * products) > _CLEARLY * np.sqrt(weight):
+        return 0.0, sizes
+    variance = np.sum(together * products) / weight
+    for _ in range(_JITTER_ROUNDS):
+        spread = 1 / (1 / variance + np.sum(ways**2 / own, axis=1))
+        moved = spread * np.sum(ways * steps / own, axis=1)
+        variance = np.mean(moved**2 + spread)
+        along = ways * moved[:, None]
+        own = np.mean((steps - along) ** 2 + ways**2 * spread[:, None], axis=0)
+    return float(np.sqrt(variance)), np.sqrt(own)
+
+
+def fitted_to_noise(
+    fit: LeastSquaresFit, stated: bool
+) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
     jittered = _with_jitter(fit, numbers) if cost > ROUNDING**2 * fit.freedom else None
@@ -58,7 +95,7 @@ def below_the_noise(misfit: float, freedom: int) -> bool:
     return bool(misfit < 1 / _NOISE_KNOWN_TO - _CHANCE * np.sqrt(1 / freedom / 2))
 
 
-def _fitted(fit: AnyFit) -> tuple[AnyFit, Floats, float]:
+def _fitted(fit: LeastSquaresFit) -> tuple[LeastSquaresFit, Floats, float]:
     """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
     every = len(fit.measured.foot_x)
     thinned = np.arange(every) % (every // _ENOUGH + 1) == 0  # to search where all would take long

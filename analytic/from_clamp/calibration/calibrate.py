@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic.from_clamp.calibration.best import explained_by_noise, fitted_to_noise
-from analytic.from_clamp.calibration.fit import VibrissaFit
+from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
 from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, checked_unknowns
@@ -23,7 +23,7 @@ from analytic.from_clamp.reconstruct import Doubt, doubt, reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError, because, require
 from analytic.problem.readings import Readings
 from analytic.problem.shown import Shown
 from analytic.problem.support import support_record
@@ -50,6 +50,9 @@ class Estimate:
     value: float
     lowest: float
     highest: float
+
+    def __str__(self) -> str:
+        return f"{self.value:.5g} ({self.lowest:.5g} to {self.highest:.5g})"
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,10 +120,7 @@ class Calibration(Shown):
 
     def _tiles(self) -> dict[str, object]:
         return {
-            **{
-                name: f"{one.value:.5g} ({one.lowest:.5g} to {one.highest:.5g})"
-                for name, one in self.found.items()
-            },
+            **self.found,
             "misfit": f"{self.misfit:.3g}{'' if self.explains else ', not explained'}",
             "stations": self.stations,
         }
@@ -196,7 +196,7 @@ def calibrate(
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
     kinds = [UNKNOWNS[name] for name in names]
-    fit = VibrissaFit(measured, case, kinds)
+    fit = LeastSquaresFit(measured, case, kinds)
     try:
         fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
         for name, number in zip(names, numbers.tolist(), strict=True):
@@ -213,7 +213,7 @@ def calibrate(
     except InputError as error:
         if (why := doubt_of_case(passes[0], case)) is None:
             raise
-        raise error.because(str(why)) from error
+        raise because(error, str(why)) from error
     sought = fit.sought(numbers)
     alike = consistency(known.by_pass, known.alike) if len(passes) > 1 else None
 
@@ -284,8 +284,8 @@ def _not_distinguished(
     return InputError("unknowns", both, allowed, remedy)
 
 
-def _interval(fit: VibrissaFit, numbers: Floats, i: int, half: float) -> Estimate:
-    kind = fit.kinds[i]
+def _interval(fit: LeastSquaresFit, numbers: Floats, i: int, half: float) -> Estimate:
+    kind = fit.unknowns[i]
     ends = []
     for number in (numbers[i] - half, numbers[i] + half):
         moved = numbers.copy()

@@ -1,21 +1,28 @@
 """Least squares: the numbers with which the closed form comes nearest to a sweep's readings."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from copy import copy
-from dataclasses import replace
-from typing import Self, get_args
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import OFFSET, Number, Sought, Unknown
-from analytic.problem.arrays import Floats, Integers
+from analytic.from_clamp.calibration.unknowns import OFFSET, Sought, Unknown
+from analytic.from_clamp.object.families import Family
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
+from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.problem.errors import InputError
+from analytic.solver.columns import Units, to_columns
+from analytic.solver.general.states import Vibrissa, rates_at
+from analytic.solver.general.stations import solve_beside
+from analytic.solver.general.sweep import solve
+
+_AT_ONCE = 4096  # stations: their intermediate results stay in the processor's cache
+_MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, x to -x
 
 _STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matter
 _SETTLED = 1e-8  # relative, of the sum of squares and of the numbers: far below any noise
@@ -26,17 +33,91 @@ _LOOKED_AT = 200  # stations to either side
 _SOLVED = 200  # stations over the root of the noise: lines between them err by 10^-3 of it
 
 
-class LeastSquaresFit(ABC):
+@dataclass(frozen=True)
+class Expected:
+    """Readings of the case's vibrissa at the stations of a sweep."""
+
+    case: Case  # the problem; its direction counts, but not its own stations
+    # Shape (3, n); In the case's units; zero before the first contact, NaN where the vibrissa has
+    # let go or has no state that slides on.
+    readings: Floats
+    loaded: Booleans  # shape (n,); Where there is a state that slides on
+    # Shape (m, 3); Contour parameter, normal force and excess of these, of the sweep to the left.
+    places: Floats
+
+    def beside(self, case: Case, foot_x: Floats) -> Floats:
+        """The readings of nearly the same case, from the states that are known."""
+        found = self.readings.copy()
+        leftward, stations = _to_the_left(case, foot_x)
+        beam, vibrissa = leftward.beam, Vibrissa.of_case(leftward)
+        loaded = np.flatnonzero(self.loaded)
+        for some in _pieces(len(loaded)):
+            moved = leftward.poses.at(stations[loaded[some]] / beam.length)
+            places, slopes = self.places[some], self._slopes[some]
+            here = solve_beside(leftward.centreline, vibrissa, moved, places, slopes)
+            columns = to_columns(here, Units.of(beam))
+            found[:, loaded[some]] = [columns[name] for name in CLAMP_READINGS]
+        if case.sweep.direction == "right":
+            found[:, self.loaded] *= _MIRRORED
+        return found
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        case, _ = _to_the_left(self.case, np.empty(0))
+        line, vibrissa = case.centreline, Vibrissa.of_case(case)
+        pieces = (self.places[some] for some in _pieces(len(self.places)))
+        return np.concatenate([rates_at(line, some, vibrissa)[1] for some in pieces])
+
+
+def expected_readings(case: Case, foot_x: Floats) -> Expected:
+    """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep."""
+    leftward, stations = _to_the_left(case, foot_x)
+    solved = solve(leftward, stations / case.beam.length)
+    columns, touching = solved.columns, solved.touching
+    loaded = touching & (columns["status"] == STATUS_NUMBER["ok"])
+    found = np.array([columns[name] for name in CLAMP_READINGS], dtype=float)
+    first = solved.events["first_contact"]
+    assert first is not None
+    let_go = ~touching & (stations < first * case.beam.length)
+    found[:, (touching & ~loaded) | let_go] = np.nan
+    if case.sweep.direction == "right":
+        found *= _MIRRORED
+    return Expected(case, found, loaded, solved.places[loaded[touching]])
+
+
+def _pieces(stations: int) -> Iterator[slice]:
+    for first in range(0, max(stations, 1), _AT_ONCE):
+        yield slice(first, first + _AT_ONCE)
+
+
+def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:
+    """The same as a sweep to the left."""
+    return (case.mirrored(), -foot_x) if case.sweep.direction == "right" else (case, foot_x)
+
+
+class LeastSquaresFit:
     """The sum of squares over some numbers, each station weighed by its noise.
+
+    The numbers are unknowns of the vibrissa and its sweep, behind those of the object's contour if
+    it is of a `family` and not as given: fits then start from some `objects`.
 
     Noise of the foot position moves all three readings of its station along their slopes over the
     foot position; both enter the station's covariance.
     """
 
-    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Number]) -> None:
-        self.measured, self.given, self.kinds = measured, given, kinds
-        self.lowest = np.array([kind.lowest for kind in kinds])
-        self.highest = np.array([kind.highest for kind in kinds])
+    def __init__(
+        self,
+        measured: Measured,
+        given: Case,
+        unknowns: Sequence[Unknown],
+        family: Family | None = None,
+        objects: Sequence[Floats] = (),
+    ) -> None:
+        self.measured, self.given, self.unknowns = measured, given, unknowns
+        self.family, self.objects = family, objects
+        self.kinds = (*(family.kinds if family else ()), *unknowns)
+        self.lowest = np.array([kind.lowest for kind in self.kinds])
+        self.highest = np.array([kind.highest for kind in self.kinds])
         self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
         # All passes to one side are solved as one sweep, whose stations are in order; where they
         # are many, at some of them.
@@ -57,22 +138,37 @@ class LeastSquaresFit(ABC):
     def freedom(self) -> int:
         return self.measured.readings.size - len(self.kinds)
 
-    @abstractmethod
+    def of_object(self, numbers: Floats) -> Floats:
+        return numbers[: len(self.kinds) - len(self.unknowns)]
+
     def sought(self, numbers: Floats) -> Sought:
-        """What these numbers make of the case."""
+        case = self.given
+        if self.family:
+            profile = self.family.profile(self.of_object(numbers))
+            case = replace(case, profile=profile.scaled(case.beam.length))
+        found, others = Sought(case), numbers[len(self.kinds) - len(self.unknowns) :].tolist()
+        for unknown, number in zip(self.unknowns, others, strict=True):
+            found = unknown.tried(found, self.given, number)
+        return found
 
-    @abstractmethod
     def starts(self) -> list[Floats]:
-        """From where the best numbers are sought."""
+        """From objects that are alike; else the case's own, others one by one, an offset's."""
+        now = np.array([one.now(Sought(self.given), self.given) for one in self.unknowns])
+        if self.family:
+            every = (np.append(one, now) for one in self.objects)
+            return [np.clip(one, self.lowest, self.highest) for one in every]
+        named, this = [one.name for one in self.unknowns], np.eye(len(now), dtype=bool)
+        found = [now]
+        for i, unknown in enumerate(self.unknowns):
+            found += [np.where(this[i], number, now) for number in unknown.starts]
+        if OFFSET in named:
+            found.append(np.where(this[named.index(OFFSET)], self._offset(), now))
+        return found
 
-    def of(self, measured: Measured) -> Self:
-        """The same of other readings."""
-        other = copy(self)
-        LeastSquaresFit.__init__(other, measured, self.given, self.kinds)
-        return other
+    def of(self, measured: Measured) -> "LeastSquaresFit":
+        return LeastSquaresFit(measured, self.given, self.unknowns, self.family, self.objects)
 
     def expected(self, numbers: Floats) -> Floats:
-        """The readings that these numbers make one expect."""
         found = self._solved(numbers)
         if found is None:
             return np.full_like(self.measured.readings, np.nan)
@@ -180,32 +276,6 @@ class LeastSquaresFit(ABC):
         covariance = np.diag(np.square(sizes)) + moved[:, :, None] * moved[:, None, :]
         return np.linalg.cholesky(covariance)
 
-
-class VibrissaFit(LeastSquaresFit):
-    """A vibrissa that is unknown, past an object that is known."""
-
-    kinds: Sequence[Unknown]
-
-    def __init__(self, measured: Measured, given: Case, kinds: Sequence[Unknown]) -> None:
-        super().__init__(measured, given, kinds)
-        self.start = np.array([kind.now(Sought(given), given) for kind in kinds])
-
-    def starts(self) -> list[Floats]:
-        """The case's own, others one by one, and that of the most likely offset."""
-        named, this = [kind.name for kind in self.kinds], np.eye(len(self.start), dtype=bool)
-        found = [
-            self.start,
-            *(
-                np.where(this[i], number, self.start)
-                for i, kind in enumerate(self.kinds)
-                for number in kind.starts
-            ),
-        ]
-        if OFFSET in named:
-            found.append(self.start.copy())
-            found[-1][named.index(OFFSET)] = self._offset()
-        return found
-
     def _offset(self) -> float:
         """At which sweeps of the case as it was given, of whatever rigidity, look alike [L]."""
         x, measured = self.measured.foot_x, self.measured.readings
@@ -232,10 +302,3 @@ class VibrissaFit(LeastSquaresFit):
 
         tried = np.linspace(x.min() - ends.max(), x.max() - ends.min(), _OFFSETS)
         return float(max(tried.tolist(), key=alike) / self.given.beam.length)
-
-    def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa with these numbers."""
-        found = Sought(self.given)
-        for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
-            found = kind.tried(found, self.given, number)
-        return found

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.from_clamp.noise import (
-    bend_uncertainty,
     checked_noise,
+    known_to,
     largest,
     reading_noise,
     resting_noise,
@@ -165,7 +165,7 @@ def measured_under_load(
     repeats = np.mean(rho**2 * (1 + rho**2) / (1 - rho**2)) / len(CLAMP_READINGS)
     vague = float(repeats * (1 / len(order) + 1 / unloaded))
     spread[1:] = np.maximum(spread[1:], free)
-    bend, rows = bend_uncertainty(readings), (len(order),)
+    bend, rows = known_to("bend_uncertainty", readings), (len(order),)
     start, stop = x[readings.trusted][[0, -1]].tolist()
     ends = ((start, stop),)
     return Measured(x[order], found, spread, rows, ends, zero, bend, free, vague)

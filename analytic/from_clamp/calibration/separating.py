@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.from_clamp.calibration.fit import VibrissaFit
+from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Direction, Sweep
@@ -28,7 +28,6 @@ class Undistinguished:
     sweeps: dict[str, float]  # by further sweep, what it multiplies that interval by, best first
 
     def said(self) -> Iterator[str]:
-        """What a user should know of it, a line each."""
         changes = ", ".join(f"{name} {change:+.2g}" for name, change in self.along.items())
         yield f"hardly distinguished (95 %), all at once: {changes}"
         if self.sweeps:
@@ -37,15 +36,15 @@ class Undistinguished:
             yield f"{best} too would make that {factor:.2g} times as large ({again})"
 
 
-def undistinguished(fit: VibrissaFit, numbers: Floats, covariance: Floats) -> Undistinguished:
+def undistinguished(fit: LeastSquaresFit, numbers: Floats, covariance: Floats) -> Undistinguished:
     """The worst direction in the space of the unknowns, and the sweeps that would shorten it."""
     values, vectors = np.linalg.eigh(covariance)
     worst = vectors[:, -1] * np.sqrt(values[-1])
     kept = np.abs(worst) > _PART * np.abs(worst).max()
-    units = [kind.unit(fit.given) for kind in fit.kinds]
+    units = [kind.unit(fit.given) for kind in fit.unknowns]
     along = {
         kind.name: float(DOUBLE_SIDED_95 * unit * part)
-        for kind, unit, part, large in zip(fit.kinds, units, worst, kept, strict=True)
+        for kind, unit, part, large in zip(fit.unknowns, units, worst, kept, strict=True)
         if large
     }
     known = np.linalg.inv(covariance)
@@ -61,7 +60,7 @@ def undistinguished(fit: VibrissaFit, numbers: Floats, covariance: Floats) -> Un
     return Undistinguished(along, dict(sorted(found.items(), key=lambda one: one[1])))
 
 
-def _information(fit: VibrissaFit, numbers: Floats) -> Floats:
+def _information(fit: LeastSquaresFit, numbers: Floats) -> Floats:
     """Inverse covariance of the numbers by white noise, the zero being known to so much."""
     jacobian, zero = fit.jacobian(numbers), fit.measured.zero
     nuisances = fit.whitening.reshape(-1, len(zero))
@@ -70,7 +69,7 @@ def _information(fit: VibrissaFit, numbers: Floats) -> Floats:
     return np.asarray(jacobian.T @ jacobian - cross.T @ np.linalg.solve(inner, cross))
 
 
-def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFit]]:
+def _sweeps(fit: LeastSquaresFit, numbers: Floats) -> Iterator[tuple[str, LeastSquaresFit]]:
     """Sweeps that would be possible, as if they had been measured."""
     case, ways = fit.given, set(fit.measured.ways)
     way = case.sweep.direction
@@ -86,7 +85,7 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
         tried[f"a sweep to the {other}"] = case, other
     for name, (changed, direction) in tried.items():
         try:
-            found = VibrissaFit(fit.measured, changed, fit.kinds).sought(numbers)
+            found = LeastSquaresFit(fit.measured, changed, fit.unknowns).sought(numbers)
             sweep = Sweep(_STATIONS, direction=direction)
             swept = solve_sweep(replace(found.case, sweep=sweep))
             loaded = swept.trusted & (swept.values("force_y") > 0)
@@ -94,6 +93,6 @@ def _sweeps(fit: VibrissaFit, numbers: Floats) -> Iterator[tuple[str, VibrissaFi
             readings = table[list(CLAMP_READINGS)].to_numpy().T
             foot_x = table["foot_x"].to_numpy() + found.offset
             measured = replace(fit.measured, foot_x=foot_x, readings=readings, rows=(len(table),))
-            yield name, VibrissaFit(measured, replace(changed, sweep=sweep), fit.kinds)
+            yield name, LeastSquaresFit(measured, replace(changed, sweep=sweep), fit.unknowns)
         except (InputError, ArithmeticError, ValueError):
             continue

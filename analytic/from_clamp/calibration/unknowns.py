@@ -18,8 +18,7 @@ _LONGEST_LAG = 0.1  # L
 
 LAG = "lag"
 OFFSET = "offset"
-OF_THE_FOOT = (OFFSET, LAG)
-"""Unknowns that are none of the case but of its foot position."""
+OF_THE_FOOT = (OFFSET, LAG)  # unknowns that are none of the case but of its foot position
 
 
 @dataclass(frozen=True)
@@ -58,15 +57,12 @@ class Unknown(Number):
 
     @property
     def called(self) -> str:
-        """What a user calls it."""
         return self.said or self.name
 
     def now(self, sought: Sought, given: Case) -> float:
-        """The number, of what is tried."""
         return self._of(sought, self.name) / self.unit(given)
 
     def tried(self, sought: Sought, given: Case, number: float) -> Sought:
-        """What is tried, with another such number."""
         value = number * self.unit(given)
         if self.name == LAG:
             return replace(sought, lag=value)

@@ -1,7 +1,7 @@
 """The object as a whole: the contour of a family that explains the clamp's readings best."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ from analytic.from_clamp.calibration.best import explained_by_noise, fitted_to_n
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
-from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, Unknown
+from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Unknown
 from analytic.from_clamp.correlated import Estimated
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
@@ -36,33 +36,17 @@ _STEP = 1e-5  # of a number, for a derivative
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FittedObject(Fitted):
-    """An object of a family, as sweeps past it show it.
+    """An object of a family, as sweeps past it show it, with what each `Fitted` has.
 
     Parameters
     ----------
-    family : str
-        Of `FAMILIES`.
-    found : dict
-        `Estimate` by parameter: lengths in the unit of the readings, else none.
     case : Case
         The vibrissa of the readings, past this object.
     band : dict of array, shape (n,)
         The contour over the slope angles that are touched: ``slope_angle`` [rad], ``x``, ``y``, and
         ``half_width`` along the normal [length], within which the true one is in 95 % of all cases.
-    misfit : float
-        Root mean square of what the fit leaves, over the noise.
-    explains : bool
-        Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
-    stations : int
-        How many the fit is from.
-    noise : NoiseFound
-        What of the noise remembers.
     passes : Consistency or None
         Of several passes, whether each alone says the same.
-    rivals : dict
-        `bic` and `explains` of each family that was tried.
     """
 
     case: Case
@@ -78,39 +62,6 @@ class FittedObject(Fitted):
         )
         ax.plot(x, y)
         ax.set(aspect="equal", xlabel="x", ylabel="y", title=self.family)
-
-
-class ObjectFit(LeastSquaresFit):
-    """An object of a family, touched by a vibrissa that is known but for some unknowns."""
-
-    def __init__(
-        self,
-        measured: Measured,
-        given: Case,
-        family: Family,
-        objects: Sequence[Floats],
-        beside: Sequence[Unknown],
-    ) -> None:
-        super().__init__(measured, given, (*family.kinds, *beside))
-        self.family, self.beside, self.objects = family, beside, objects
-        self.others = [one.now(Sought(given), given) for one in beside]
-
-    def starts(self) -> list[Floats]:
-        """From objects that are alike."""
-        every = (np.append(one, self.others) for one in self.objects)
-        return [np.clip(one, self.lowest, self.highest) for one in every]
-
-    def of_object(self, numbers: Floats) -> Floats:
-        return numbers[: len(self.family.kinds)]
-
-    def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa past the object of these numbers."""
-        profile = self.family.profile(self.of_object(numbers)).scaled(self.given.beam.length)
-        found = Sought(replace(self.given, profile=profile))
-        others = numbers[len(self.family.kinds) :].tolist()
-        for one, number in zip(self.beside, others, strict=True):
-            found = one.tried(found, self.given, number)
-        return found
 
 
 def fit_object(
@@ -178,20 +129,21 @@ def families_fitted(
     circles = _circles_through(x, y)
     others = [UNKNOWNS[name] for name in beside]
     known = families(angles)
-    tried: dict[str, tuple[ObjectFit, Floats, float, Estimated]] = {}
+    tried: dict[str, tuple[LeastSquaresFit, Floats, float, Estimated]] = {}
 
-    def fitted(name: str) -> tuple[ObjectFit, Floats, float, Estimated]:
+    def fitted(name: str) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
         if name not in tried:
             one = known[name]
             simpler = circles
             if one.simpler:
                 simpler = [fit.of_object(at) for fit, at, *_ in map(fitted, one.simpler)]
             measured, case = _measured(passes, noise, len(one.kinds) + len(others))
-            fit = ObjectFit(measured, case, one, [one.start(at) for at in simpler], others)
+            objects = [one.start(at) for at in simpler]
+            fit = LeastSquaresFit(measured, case, others, one, objects)
             tried[name] = fitted_to_noise(fit, noise is not None)
         return tried[name]
 
-    return lambda name: _object(*fitted(name), angles)
+    return lambda name: _object(known[name], *fitted(name), angles)
 
 
 def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
@@ -245,9 +197,14 @@ def _measured(
 
 
 def _object(
-    fit: ObjectFit, numbers: Floats, misfit: float, known: Estimated, angles: Floats
+    family: Family,
+    fit: LeastSquaresFit,
+    numbers: Floats,
+    misfit: float,
+    known: Estimated,
+    angles: Floats,
 ) -> FittedObject:
-    long, kinds, size = fit.given.beam.length, fit.kinds, len(fit.family.kinds)
+    long, kinds, size = fit.given.beam.length, fit.kinds, len(family.kinds)
     deviations = np.sqrt(np.diag(known.covariance))
     found = {}
     for kind, number, deviation in zip(kinds, numbers, deviations, strict=True):
@@ -255,22 +212,16 @@ def _object(
         if isinstance(kind, Unknown):
             unit = kind.unit(fit.given)
         half = DOUBLE_SIDED_95 * deviation
-        found[kind.name] = Estimate(
-            *(float(unit * x) for x in (number, number - half, number + half))
-        )
+        ends = number, number - half, number + half
+        found[kind.name] = Estimate(*(float(unit * x) for x in ends))
     alike = consistency(known.by_pass, known.alike) if len(fit.measured.rows) > 1 else None
     stations = len(fit.measured.foot_x)
     data = fit.measured.readings.size
     return FittedObject(
-        family=fit.family.name,
+        family=family.name,
         found=found,
         case=fit.sought(numbers).case,
-        band={
-            name: long * x if name != "slope_angle" else x
-            for name, x in _band(
-                fit.family, fit.of_object(numbers), known.covariance[:size, :size], angles
-            ).items()
-        },
+        band=_band(family, fit.of_object(numbers), known.covariance[:size, :size], angles, long),
         misfit=misfit,
         explains=explained_by_noise(misfit, fit.freedom, fit.measured.vague)
         and left_by_noise(known.noise, alike, misfit),
@@ -281,7 +232,9 @@ def _object(
     )
 
 
-def _band(family: Family, numbers: Floats, covariance: Floats, angles: Floats) -> dict[str, Floats]:
+def _band(
+    family: Family, numbers: Floats, covariance: Floats, angles: Floats, length: float
+) -> dict[str, Floats]:
     """The contour over the angles that are touched, and how well it is known along its normal."""
     low, high = np.quantile(angles, [0.01, 0.99]).tolist()
     angle = np.linspace(low, high, _BAND)
@@ -299,7 +252,7 @@ def _band(family: Family, numbers: Floats, covariance: Floats, angles: Floats) -
     variance = np.einsum("kn,kl,ln->n", along, covariance, along)
     return {
         "slope_angle": angle,
-        "x": here[0],
-        "y": here[1],
-        "half_width": DOUBLE_SIDED_95 * np.sqrt(variance),
+        "x": length * here[0],
+        "y": length * here[1],
+        "half_width": length * (DOUBLE_SIDED_95 * np.sqrt(variance)),
     }

@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.unknowns import LAG
-from analytic.from_clamp.noise import bend_uncertainty, reading_noise
+from analytic.from_clamp.noise import known_to, reading_noise
 from analytic.from_clamp.object.fit_object import families_fitted, late_if_both_ways
 from analytic.from_clamp.passes import as_passes
 from analytic.problem.columns import CLAMP_READINGS, SENSED
@@ -33,7 +33,6 @@ class Lag:
 
     @property
     def shows(self) -> bool:
-        """Whether there is one."""
         return not self.way.lowest <= 0 <= self.way.highest
 
 
@@ -79,9 +78,8 @@ def _noise_of(means: Sequence[Readings]) -> dict[str, float]:
     sizes = []
     for one in means:
         seen = np.array([*reading_noise(one).values()])
-        zero = one.provenance.get("zero_uncertainty", {})
-        known = np.array([float(zero.get(name, 0.0)) for name in CLAMP_READINGS])
-        sizes.append(np.linalg.norm([seen, known, bend_uncertainty(one)], axis=0))
+        known = [known_to(f"{what}_uncertainty", one) for what in ("zero", "bend")]
+        sizes.append(np.linalg.norm([seen, *known], axis=0))
     return dict(zip(CLAMP_READINGS, np.max(sizes, axis=0).tolist(), strict=True))
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.contours.mesh_file import MeshBody, read_body
 from analytic.problem.contours.polygon import Polygon, polygon
-from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import finite, pair, positive, within
 
@@ -77,7 +77,8 @@ def mesh_section(
     if not low < height < high:
         what = f"outside {low:.6g}..{high:.6g} along {third}"
         raise InputError(plane, what, "between the mesh's ends there", "move the plane")
-    points = (body.vertices[:, across] - [0, 0, height]) * [1, 1, _handedness(across)]
+    turned = np.rint(np.linalg.det(np.eye(3)[across]))  # or the body became its mirror image
+    points = (body.vertices[:, across] - [0, 0, height]) * [1, 1, turned]
     corners = _corners(_cut(points, body.faces) * scale + shift)
     if len(corners) < 3:
         raise InputError(plane, "only touching the mesh", "where it cuts the mesh", "move it")
@@ -119,11 +120,6 @@ def _corners(points: Floats) -> Floats:
         first = int(np.argmin(np.where(straight, turn, np.inf)))  # one at a time: both ends of a
         corners = np.delete(corners, first, axis=0)  # short edge may be straight
     return corners
-
-
-def _handedness(across: list[int]) -> int:
-    """1 if these axes are right-handed, -1 if not: the body must not become its mirror image."""
-    return round(float(np.linalg.det(np.eye(3)[across])))
 
 
 def _tilt(body: MeshBody, points: Floats, across: list[int]) -> float:

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.contours.contour import Contour, ContourPoint, ConvexMesh
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import points_of, positive
 
@@ -84,7 +83,6 @@ class Polygon(Contour):
         return replace(self, vertices=self.vertices + np.array([0.0, height]), solid=None)
 
     def mirrored(self) -> "Polygon":
-        """The mirror image: x becomes -x; the vertices still run from left to right."""
         vertices = self.vertices[::-1] * [-1, 1]
         return replace(
             self,

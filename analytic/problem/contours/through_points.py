@@ -31,7 +31,6 @@ class _Arcs(NamedTuple):
         return self.radius[self.on(alpha)]
 
     def on(self, alpha: Floats) -> Integers:
-        """The arcs on which slope angles are."""
         last = len(self.radius) - 1
         return np.clip(np.searchsorted(self.begin, alpha, side="right") - 1, 0, last)
 

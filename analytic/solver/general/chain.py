@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses
 from analytic.solver.general.clearance import bends_one_way, deepest, is_clear
 from analytic.solver.general.curve import EquilibriumCurve, Point, turned_round
 from analytic.solver.general.pair import Pair

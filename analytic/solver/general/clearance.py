@@ -14,10 +14,10 @@ import numpy as np
 from analytic.numerics.batches import take
 from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.clamp_path import Pose
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Pose
-from analytic.solver.general.march import Trail, march
 from analytic.solver.general.pair import Pair, places
+from analytic.solver.general.span import Trail, march
 from analytic.solver.general.states import States, Vibrissa
 
 _PLACES = np.linspace(0, 1, 17)[1:]  # parts of the loaded span, and of the free end

@@ -2,7 +2,7 @@
 
 Its coordinates are contour parameter t, normal force f, excess w, three numbers more of a second
 contact (`analytic.solver.general.pair`), and the parameter p of the
-clamp's way (`analytic.problem.poses`). Keller's pseudo-arclength
+clamp's way (`analytic.problem.clamp_path`). Keller's pseudo-arclength
 continuation: a step along the tangent, and Newton's method back to the curve in the plane normal
 to it. The curve has a kink where the phases take turns and where the contour is not smooth.
 """
@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.clamp_path import Poses, Straight
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses, Straight
 from analytic.solver.general.pair import Pair
 from analytic.solver.general.states import FORCES, INSIDE, Vibrissa, balance
 

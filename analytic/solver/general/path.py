@@ -8,8 +8,8 @@ import numpy as np
 
 from analytic.numerics.hermite import hermite
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses
 from analytic.problem.rest import FirstTouch
 from analytic.solver.general.curve import EquilibriumCurve, Point, normal_to
 from analytic.solver.general.pair import Pair

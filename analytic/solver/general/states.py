@@ -10,7 +10,7 @@ and that, and the other side begins twice that earlier. With the normal force f,
 mu and slope angle alpha of the contour the force on the vibrissa is F = f sqrt(1 + mu^2) at the
 slope angle phi_F = alpha + arctan(mu): a dead force again. It acts on the surface, so that the
 couple -mu r f remains at the contact. Of a heavy vibrissa the end beyond a contact of Phase B hangs
-(`analytic.problem.hanging`), and its moment remains there, too.
+(`analytic.problem.rod`), and its moment remains there, too.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,16 +19,13 @@ import numpy as np
 
 from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.hanging import AtRest, Hung, at_rest, hang
-from analytic.problem.poses import Pose, Poses
-from analytic.problem.rod import RodProperties
+from analytic.problem.rod import AtRest, Hung, RodProperties, at_rest, hang
 from analytic.problem.support import Support
-from analytic.problem.unloaded import Unloaded
-from analytic.solver.general import march
-from analytic.solver.general.span import Start, back_to_clamp
+from analytic.solver.general.span import Start, back_by_collocation, back_to_clamp
 
 if TYPE_CHECKING:
     from analytic.solver.general.pair import InnerContact, Pair
@@ -39,10 +36,8 @@ _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
 _ASIDE = 1e-5  # rad; to both sides, by which a heavy vibrissa is turned with its contact
 _BOTH_SIDES = np.array([[1.0], [-1.0]])
-FORCES = slice(1, -1, 3)
-"""The places of the forces among the numbers of a state on a way."""
-INSIDE = -5e-324
-"""An excess of nothing, in Phase B."""
+FORCES = slice(1, -1, 3)  # the places of the forces among the numbers of a state on a way
+INSIDE = -5e-324  # an excess of nothing, in Phase B
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
 
 
@@ -174,7 +169,7 @@ class Vibrissa(NamedTuple):
     ) -> Start:
         if self.rod is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
-        return march.back_to_clamp(self.rod, slope, -couple, force, length, direction)
+        return back_by_collocation(self.rod, slope, -couple, force, length, direction)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
@@ -210,7 +205,6 @@ class States(NamedTuple):
 
     @property
     def side(self) -> Integers:
-        """What touches: -1 the front, 0 the tip, 1 the back."""
         return self.vibrissa.side(self.excess)
 
     @property

@@ -4,8 +4,8 @@ import numpy as np
 
 from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Pose, Poses
 from analytic.solver.general.pair import Pair
 from analytic.solver.general.path import Path, refined
 from analytic.solver.general.states import States, Vibrissa, misses, rates_at, states_at
@@ -26,11 +26,6 @@ def solve_beside(
     return states_at(contour, z, vibrissa)
 
 
-def slopes_at(contour: Contour | Pair, vibrissa: Vibrissa, z: Floats) -> Floats:
-    """Derivatives of what states miss by contour parameter, force and excess."""
-    return rates_at(contour, z, vibrissa)[1]
-
-
 def solve_near(
     contour: Contour | Pair,
     vibrissa: Vibrissa,
@@ -45,7 +40,7 @@ def solve_near(
         return misses(states_at(contour, z, vibrissa), here)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        return slopes_at(contour, vibrissa, z) if slopes is None else slopes[which]
+        return rates_at(contour, z, vibrissa)[1] if slopes is None else slopes[which]
 
     z, missed = solve(missed_at, jacobian, start)
     return z, missed <= _BALANCED * np.maximum(1.0, np.abs(pose.foot_x))

@@ -8,9 +8,9 @@ import numpy as np
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.clamp_path import Poses
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
-from analytic.problem.poses import Poses
 from analytic.problem.reach import contact_range
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
 from analytic.solver.general.chain import (
@@ -94,7 +94,6 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
 
 
 def _pieces(paths: Sequence[Path], holder: Integers) -> Iterator[tuple[Path, Integers]]:
-    """Some stations of a path, then others."""
     for i, path in enumerate(paths):
         held = np.flatnonzero(holder == i)
         for first in range(0, len(held), AT_ONCE):

@@ -18,14 +18,15 @@ from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
-from analytic.space.from_clamp.noise import (
+from analytic.space.from_clamp.reconstruct import (
     COMPONENTS,
+    ClampInSpace,
     component_noise,
     felt,
     least_force,
+    of_one_vibrissa,
     over_units,
 )
-from analytic.space.from_clamp.reconstruct import ClampInSpace, of_one_vibrissa
 from analytic.space.problem.bodies.body import Body, across
 from analytic.space.problem.readings import SpatialReadings
 
@@ -49,29 +50,14 @@ _KNOWN_TO = 0.5  # L; a length that is known to less is not determined
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FittedBody(Fitted):
-    """A body of a family, as sweeps past it show it.
+    """A body of a family, as sweeps past it show it, with what each `Fitted` has.
+
+    What is found of an axis are the components of its unit vector.
 
     Parameters
     ----------
-    family : str
-        ``"sphere"``, ``"ellipsoid"`` or ``"cylinder"``.
-    found : dict
-        `Estimate` by parameter: lengths in the unit of the readings; of an axis the components of
-        its unit vector.
     body : Body
         The body.
-    misfit : float
-        Root mean square of what the fit leaves, over the noise.
-    explains : bool
-        Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
-    stations : int
-        How many the fit is from.
-    noise : NoiseFound
-        What of the noise remembers.
-    rivals : dict
-        `bic` and `explains` of each family that was tried.
     """
 
     body: Body
@@ -219,7 +205,7 @@ def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
         height, expected = family.surface(numbers, points)
         return np.concatenate([height, (expected - normals).ravel()])
 
-    found = least_squares(apart, family.start(points, normals), loss="soft_l1", f_scale=_OFF)
+    found = least_squares(apart, family.start, loss="soft_l1", f_scale=_OFF)
     return np.asarray(found.x)
 
 

@@ -11,8 +11,14 @@ from analytic.from_clamp.noise import DOUBLE_SIDED_95, covering
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.problem.shown import Shown
-from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
-from analytic.space.from_clamp.reconstruct import ClampInSpace, contacts_moved, of_one_vibrissa
+from analytic.space.from_clamp.reconstruct import (
+    COMPONENTS,
+    ClampInSpace,
+    component_noise,
+    contacts_moved,
+    felt,
+    of_one_vibrissa,
+)
 from analytic.space.problem.bodies.polyhedron import Polyhedron, polyhedron
 from analytic.space.problem.readings import SpatialReadings
 

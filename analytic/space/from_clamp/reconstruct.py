@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from analytic.from_clamp.contact import LONGEST, contact_bent_right
-from analytic.from_clamp.noise import AT_ONCE, SAMPLES, covering
+from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_bent_right
+from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering, scatter
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import require_plain
-from analytic.space.from_clamp.noise import component_noise, felt, over_units
 from analytic.space.problem.readings import (
     CONTACT_POINT,
     FOOT,
@@ -21,6 +21,10 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 
+COMPONENTS = (*FORCE, *MOMENT)
+_SIGMAS = 5.0  # noise alike in x, y and z makes more of no force once in 65,000 stations
+_BOTH = np.sqrt(2.0)  # where nothing touches, noise of force and of moment make one product
+
 _AS_READ = "as read_space gives them"
 _EXACT = 1e-9  # sine of an angle: what rounding leaves of one that vanishes
 _EXPLAINED = 4.0  # standard deviations that noise may explain
@@ -29,6 +33,47 @@ _TURNED = 0.02  # rad; on a flat face noise alone turns a normal
 # spheres and eggs, -1 to -0.3 with the opposite signs.
 _HOLLOW = 0.3
 _SUSPICIOUS = 0.02  # share of the moment that must not be there, in the median of a sweep
+
+
+def component_noise(
+    readings: SpatialReadings, stated: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """Standard deviation of each component's noise: what is stated, or seen if that is more.
+
+    What jumps from station to station is seen, as in the plane. Stations that lie far apart seem to
+    jump, too; but one force, wherever it acts and in whatever frame, has no moment along itself:
+    what F . M jumps by is noise and nothing else, and if it is less than what was seen allows, what
+    was seen is so much less noise.
+    """
+    given = {} if stated is None else checked_noise(stated, COMPONENTS)
+    force, moment = readings.values(*FORCE), readings.values(*MOMENT)
+    loaded = readings.trusted & force.any(axis=1)
+    force, moment = force[loaded], moment[loaded]
+    seen = np.array([scatter(values) for values in np.hstack([force, moment]).T])
+    allowed = np.sqrt(moment**2 @ seen[:3] ** 2 + force**2 @ seen[3:] ** 2)
+    product = (force * moment).sum(axis=1)
+    share = min(1.0, _BOTH * scatter(product[allowed > 0] / allowed[allowed > 0]))
+    return {
+        name: max(float(given.get(name, 0.0)), share * float(size))
+        for name, size in zip(COMPONENTS, seen, strict=True)
+    }
+
+
+def over_units(noise: Mapping[str, float], beam: Beam) -> Floats:
+    """Those of the six components, dimensionless; nothing of what is not there."""
+    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
+    return np.asarray([noise.get(name, 0.0) for name in COMPONENTS] / units)
+
+
+def least_force(readings: SpatialReadings, noise: Mapping[str, float]) -> float:
+    """The force below which a station is taken for free."""
+    return max(_SIGMAS * max(noise[name] for name in FORCE), UNLOADED * readings.beam.force_unit)
+
+
+def felt(readings: SpatialReadings, noise: Mapping[str, float]) -> Booleans:
+    """Trusted stations with a force that noise does not make."""
+    force = np.linalg.norm(readings.values(*FORCE), axis=1)
+    return np.asarray(readings.trusted & (force > least_force(readings, noise)))
 
 
 def reconstruct_space(
@@ -210,7 +255,6 @@ class ClampInSpace(NamedTuple):
 
     @classmethod
     def of(cls, readings: SpatialReadings) -> "ClampInSpace":
-        """Of a sweep."""
         beam = readings.beam
         return cls(
             readings.values(*FOOT) / beam.length,
@@ -221,7 +265,6 @@ class ClampInSpace(NamedTuple):
         )
 
     def at(self, which: Booleans | Integers) -> "ClampInSpace":
-        """Some of the stations."""
         foot, force, moment = (values[which] for values in self[:3])
         return self._replace(foot=foot, force=force, moment=moment)
 
@@ -231,7 +274,6 @@ class ClampInSpace(NamedTuple):
         return np.hstack([self.force, self.moment])
 
     def feeling(self, components: Floats) -> "ClampInSpace":
-        """The same with another force and moment."""
         return self._replace(force=components[:, :3], moment=components[:, 3:])
 
     def contacts(self) -> Floats:

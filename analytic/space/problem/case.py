@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analytic.problem.beam import Beam
-from analytic.problem.case_shown import described
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import within
-from analytic.problem.shown import Shown, new_figure
+from analytic.problem.shown import Shown, described, new_figure
 from analytic.problem.support import require_plain
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.polyhedron import Polyhedron
-from analytic.space.problem.path import FootPath
-from analytic.space.problem.straight import StraightVibrissa
+from analytic.space.problem.path import FootPath, StraightVibrissa
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

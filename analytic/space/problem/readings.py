@@ -13,10 +13,10 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, Place, row_number
 from analytic.problem.files import as_path
+from analytic.problem.numbers import direction
 from analytic.problem.readings_file import read_file
 from analytic.problem.sweep_table import SweepTable, usable
 from analytic.problem.table import as_numbers, check_columns, check_words
-from analytic.space.problem.numbers import direction
 
 FOOT = ("foot_x", "foot_y", "foot_z")
 FORCE = ("force_x", "force_y", "force_z")
@@ -25,8 +25,7 @@ SENSED_IN_SPACE = (*FOOT, *FORCE, *MOMENT)
 """What the clamp of a sweep in space knows: where it is, force and moment."""
 CONTACT_POINT = ("contact_x", "contact_y", "contact_z")
 NORMAL = ("normal_x", "normal_y", "normal_z")
-FRICTION = ("friction_x", "friction_y", "friction_z")
-"""Over the normal force, on the vibrissa."""
+FRICTION = ("friction_x", "friction_y", "friction_z")  # over the normal force, on the vibrissa
 PHASES_IN_SPACE = ("free", "tip", "tangent")
 STATUSES_IN_SPACE = (
     "ok",

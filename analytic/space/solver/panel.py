@@ -47,8 +47,7 @@ def _radau() -> Floats:
     return np.concatenate([[0.0], (np.sort(last.roots().real) + 1) / 2])
 
 
-POINTS = _radau()
-"""Shares of a panel: its begin, and Radau's points with its end."""
+POINTS = _radau()  # shares of a panel: its begin, and Radau's points with its end
 _SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
 _SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
 

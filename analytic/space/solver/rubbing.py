@@ -8,9 +8,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import Spot, across
-from analytic.space.problem.bodies.feature import Feature
-from analytic.space.problem.straight import StraightVibrissa
+from analytic.space.problem.bodies.body import Feature, Spot, across
+from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.contact import APART, Scene
 from analytic.space.solver.hop import DependsOnMotion
 from analytic.space.solver.panel import POINTS, Law, Panel, panel

@@ -2,7 +2,7 @@ r"""A vibrissa that rubs against a body in space, at rest.
 
 One dead force F = f (n + rub), n the body's normal and rub, along its surface, friction over the
 normal force, bends a thin, straight, isotropic vibrissa in one plane, that of its clamp's tangent t
-and F, wherever friction points. In that plane it is the elastica of `analytic.space.solver.rod`
+and F, wherever friction points. In that plane it is the elastica of `analytic.space.solver.contact`
 with the direction of F in the place of the normal. Where F is along t, which sweeps pass, it does
 not say in which plane: so the direction e, in it and across t, is of the state.
 
@@ -17,8 +17,7 @@ import numpy as np
 from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import across
-from analytic.space.solver.contact import APART, Contact, Scene
-from analytic.space.solver.rod import Loaded, Plane, loaded_part
+from analytic.space.solver.contact import APART, Contact, Loaded, Plane, Scene, loaded_part
 
 RUB, PSI, ROTATION, LENGTH, TRAVEL = slice(2, 4), 4, 5, 6, 7
 """Among rates: of friction along `across` the normal, e's turn, and what `State` calls so; the

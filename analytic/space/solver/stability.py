@@ -31,8 +31,7 @@ drops the vibrissa earlier.
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.solver.contact import APART, Contact
-from analytic.space.solver.rod import loaded_part
+from analytic.space.solver.contact import APART, Contact, loaded_part
 
 _SHARPEST = 1e-12  # L, radius given to an edge when the vibrissa has none
 _SLIGHT = 1e-2  # rad, of w: below, K is scaled, since rounding would swamp what is of order w^3

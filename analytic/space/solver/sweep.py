@@ -11,7 +11,7 @@ from analytic.from_clamp.contact import contact_bent_right
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import require
-from analytic.solver.recorded import engine
+from analytic.solver.columns import engine
 from analytic.space.checks.rod import rod_residuals
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
@@ -24,8 +24,7 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 from analytic.space.problem.recorder import stated
-from analytic.space.solver.contact import Contact, Scene
-from analytic.space.solver.rod import Plane
+from analytic.space.solver.contact import Contact, Plane, Scene
 from analytic.space.solver.rubbing import Rubbed, Rubbing
 from analytic.space.solver.stability import margin, second_variation
 from analytic.space.solver.walk import Gliding

@@ -10,7 +10,7 @@ import numpy as np
 from analytic.numerics.walk import WalkEvent, first_unlike
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
-from analytic.space.problem.straight import StraightVibrissa
+from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
 from analytic.space.solver.hop import DependsOnMotion, landing
 from analytic.space.solver.newton import settle, settle_whole

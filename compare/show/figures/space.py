@@ -65,7 +65,6 @@ def sweep_in_space(scene: SweepScene, around: Floats | None = None) -> Figure:
 
 
 def both_in_space(comparison: SpatialComparison) -> Figure:
-    """Draw the six components of both sweeps over the way of the foot, and their differences."""
     figure = Figure(figsize=(style.PAGE_WIDTH, 0.6 * style.PAGE_WIDTH), layout="constrained")
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     one, other = comparison.reference, comparison.candidate

@@ -15,46 +15,23 @@ from analytic import NAMED_TABLES, InputError
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import unknown
 from compare.read.complaints import complaint, shown
+from compare.read.tables import PLACES
 from compare.read.toml import TomlFile
-from compare.study.grid.study import (
-    BEAM,
-    COMPONENTS_OF,
-    MESHES,
-    RECORDS,
-    RUN_TABLES,
-    Axis,
-    PlanarRun,
-    Range,
-    SpatialRun,
-    Study,
-    StudyFile,
-    Value,
-    between,
-    checked_run,
-    replaced,
-)
+from compare.study.grid import study
 from engines.known import named_engines
 
-Between: TypeAlias = Callable[[Floats], list[Value]]
+Between: TypeAlias = Callable[[Floats], list[study.Value]]
 """The values of a range at fractions of it."""
 _LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at a millisecond
-_RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
-# Keys of what errors of a case name otherwise.
-_KEYS = {
-    "clamp_stiffness": ["support", "rotational_stiffness"],
-    "friction": ["contact", "friction"],
-    "clamp_angle": ["support", "angle"],
-    "engine": ["engine", "name"],
-}
+_RANGE_KEYS = frozenset(study.Range.model_json_schema()["properties"])
 
 
 def shipped_studies() -> dict[str, Path]:
-    """Find the studies that come with the package."""
     folder = Path(str(files("compare.study") / "shipped"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def load_study(name_or_path: str) -> Study:
+def load_study(name_or_path: str) -> study.Study:
     """Read a study.
 
     Parameters
@@ -80,24 +57,24 @@ def load_study(name_or_path: str) -> Study:
     return _checked(TomlFile.read(path, "study file"))
 
 
-def _checked(file: TomlFile) -> Study:
+def _checked(file: TomlFile) -> study.Study:
     # Without a name of its own the study is called like its file, under the same rules.
     tables = {"study": {}, **_without_model(file)}
     if isinstance(tables["study"], dict):
         tables["study"] = {"name": file.path.stem, **tables["study"]}
     try:
-        content = StudyFile.model_validate(tables)
+        content = study.StudyFile.model_validate(tables)
     except ValidationError as error:
         raise complaint(error, file.place) from error
     base, table = _Base(file, content), content.study
-    beams = [base.values[BEAM]] if table.beams is None else table.beams
-    beams = [str(base.tried(BEAM, beam, ["study", "beams"])) for beam in beams]
-    return Study(
+    beams = [base.values[study.BEAM]] if table.beams is None else table.beams
+    beams = [str(base.tried(study.BEAM, beam, ["study", "beams"])) for beam in beams]
+    return study.Study(
         name=str(table.name),
         base=base.values,
         axes=base.axes(),
         beams=tuple(dict.fromkeys(beams)),
-        record=tuple(table.record or (RECORDS if beams else ("events",))),
+        record=tuple(table.record or (study.RECORDS if beams else ("events",))),
         keep_readings=table.keep_readings,
         timeout=table.timeout,
         case=table.case or file.path.stem,
@@ -115,21 +92,21 @@ def _without_model(file: TomlFile) -> dict[str, Any]:
 class _Base:
     """The base case of a study file, on which every value of its axes is tried."""
 
-    def __init__(self, file: TomlFile, content: StudyFile) -> None:
+    def __init__(self, file: TomlFile, content: study.StudyFile) -> None:
         self._file, self._content = file, content
         self._tables = self._overlaid()
         try:
-            checked = checked_run(self._tables, file.place)
+            checked = study.checked_run(self._tables, file.place)
         except InputError:  # what varies need not stand in the case, too
             self._tables = self._with_first_values()
-            checked = checked_run(self._tables, file.place)
+            checked = study.checked_run(self._tables, file.place)
         try:
             self._built(checked)
         except InputError as error:
             table, _, key = error.name.partition("[")[0].partition(".")
             default = ["body" if "body" in self._tables else "profile"]
             keys = [table, key] if key and table in self._tables else default
-            keys = _KEYS.get(error.name, keys)
+            keys = [*PLACES.get(error.name, keys)]
             raise self._wrong(keys, "unusable", "usable", str(error)) from error
         self.values = {
             f"{name}.{key}": value
@@ -137,13 +114,13 @@ class _Base:
             for key, value in table.items()
             if value is not None
         }
-        for mesh in MESHES:
+        for mesh in study.MESHES:
             if mesh in self.values:
                 self.values[mesh] = self._path(self.values[mesh])
 
-    def axes(self) -> tuple[Axis, ...]:
+    def axes(self) -> tuple[study.Axis, ...]:
         """What the file says of its axes: lists, ranges with a count, samples of those without."""
-        lists: list[dict[str, list[Value]]] = []
+        lists: list[dict[str, list[study.Value]]] = []
         sampled: dict[str, Between] = {}
         for key, value in self._items():
             self._check_key(key, _place(key))
@@ -151,7 +128,7 @@ class _Base:
                 lists.append({key: self._listed(key, value)})
                 continue
             try:
-                span = Range.model_validate(value)
+                span = study.Range.model_validate(value)
             except ValidationError as error:
                 raise complaint(error, self._file.place, _place(key)) from error
             values_at = self._between(key, span)
@@ -162,16 +139,16 @@ class _Base:
                 lists.append({key: list(dict.fromkeys(values))})
         for keys in self._content.study.zip:
             lists = self._zipped(lists, keys)
-        return (*map(Axis.of, lists), *self._sampled(sampled))
+        return (*map(study.Axis.of, lists), *self._sampled(sampled))
 
-    def tried(self, key: str, value: object, place: Sequence[str]) -> Value:
+    def tried(self, key: str, value: object, place: Sequence[str]) -> study.Value:
         """Try a value on the base case; combinations of values are not tried."""
         self._check_key(key, place)
         table, inner, *component = key.split(".")
         if component:
-            whole = replaced(self._components(table, inner), component[0], value)
+            whole = study.replaced(self._components(table, inner), component[0], value)
             plain = self._tried(table, inner, whole, place)
-            found = plain[COMPONENTS_OF.index(component[0])]  # type: ignore[index]
+            found = plain[study.COMPONENTS_OF.index(component[0])]  # type: ignore[index]
         elif parts := self._components_of(table, inner):
             remedy = f"vary {key}.{parts[0]}"
             raise self._wrong(place, shown(value), "one number or word", remedy)
@@ -183,7 +160,7 @@ class _Base:
         if not isinstance(found, int | float | str):
             remedy = "this key cannot be an axis"
             raise self._wrong(place, shown(value), "one number or word", remedy)
-        return self._path(str(found)) if key in MESHES else found
+        return self._path(str(found)) if key in study.MESHES else found
 
     def _wrong(
         self, keys: Sequence[str], given: str, allowed: str, remedy: str = "correct it"
@@ -213,7 +190,7 @@ class _Base:
                 seen.add(key)
                 yield key, value
 
-    def _listed(self, key: str, values: list[Any]) -> list[Value]:
+    def _listed(self, key: str, values: list[Any]) -> list[study.Value]:
         if len(set(map(repr, values))) < len(values):
             allowed = "a list of different values"
             raise self._wrong(_place(key), shown(values), allowed, "name each once")
@@ -222,7 +199,7 @@ class _Base:
             raise self._wrong(_place(key), given, allowed, "give a range with a count instead")
         return [self.tried(key, value, _place(key)) for value in values]
 
-    def _between(self, key: str, span: Range) -> Between:
+    def _between(self, key: str, span: study.Range) -> Between:
         """The values of a range between two numbers, in the units that the case ends up in."""
         ends = [self.tried(key, end, _place(key)) for end in (span.low, span.high)]
         numbers = [float(end) for end in ends if not isinstance(end, bool | str)]
@@ -234,11 +211,11 @@ class _Base:
             allowed = "two different numbers, both positive if the spacing is log"
             raise self._wrong(_place(key), given, allowed, "correct the range")
         whole = all(isinstance(end, int) for end in ends)
-        return partial(between, numbers[0], numbers[1], span.spacing == "log", whole)
+        return partial(study.between, numbers[0], numbers[1], span.spacing == "log", whole)
 
     def _zipped(
-        self, lists: list[dict[str, list[Value]]], keys: list[str]
-    ) -> list[dict[str, list[Value]]]:
+        self, lists: list[dict[str, list[study.Value]]], keys: list[str]
+    ) -> list[dict[str, list[study.Value]]]:
         """The lists with those of `keys` joined into one."""
         chosen = [group for group in lists if group.keys() & set(keys)]
         lengths = [len(values) for group in chosen for values in group.values()]
@@ -251,7 +228,7 @@ class _Base:
         rest = [group for group in lists if group not in chosen]
         return [*rest[:first], together, *rest[first:]]
 
-    def _sampled(self, ranges: Mapping[str, Between]) -> list[Axis]:
+    def _sampled(self, ranges: Mapping[str, Between]) -> list[study.Axis]:
         """The one axis of all ranges without a count, if there are any."""
         sample = self._content.sample
         if sample is None and ranges:
@@ -265,31 +242,31 @@ class _Base:
             remedy = "take the count from the ranges to be sampled"
             raise self._wrong(["sample"], "given", allowed, remedy)
         drawn = zip(ranges.items(), sample.draw(len(ranges)).T, strict=True)
-        return [Axis.of({key: values_at(column) for (key, values_at), column in drawn})]
+        return [study.Axis.of({key: values_at(column) for (key, values_at), column in drawn})]
 
     def _check_key(self, key: str, place: Sequence[str]) -> None:
         table, *inner = key.split(".")
         component = inner[1:]
         if (
-            table not in RUN_TABLES
+            table not in study.RUN_TABLES
             or not 1 <= len(inner) <= 2
-            or (component and component[0] not in COMPONENTS_OF)
+            or (component and component[0] not in study.COMPONENTS_OF)
         ):
             remedy = (
                 "write it as in a case file, as beam.radius; path.tangent.x of what has x and y"
             )
-            raise self._wrong(place, "an axis", f"a key of {', '.join(RUN_TABLES)}", remedy)
+            raise self._wrong(place, "an axis", f"a key of {', '.join(study.RUN_TABLES)}", remedy)
         if component and component[0] not in (there := self._components_of(table, inner[0])):
             allowed = f"{inner[0]} whole, or its {', '.join(there)}" if there else "without a part"
             raise self._wrong(place, "an axis", allowed, "leave the component out")
-        if key == BEAM and place[0] == "axes":
+        if key == study.BEAM and place[0] == "axes":
             raise self._wrong(place, "an axis", "given as study.beams", "list the beams there")
 
     def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
         """What the base case holds with `value` for a key."""
         changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}
         # An error is called by the axis, whichever key of the case complains.
-        checked = checked_run(changed, lambda _: self._file.place(place))
+        checked = study.checked_run(changed, lambda _: self._file.place(place))
         try:
             self._built(checked)
         except InputError as error:
@@ -305,17 +282,16 @@ class _Base:
         whole = self._components(table, key)
         if len(whole) not in (2, 3) or any(isinstance(one, list | dict) for one in whole):
             return ()
-        return COMPONENTS_OF[: len(whole)]
+        return study.COMPONENTS_OF[: len(whole)]
 
     def _components(self, table: str, key: str) -> Sequence[Any]:
         """What the file or else the case has for a key; nothing if that is no list."""
         given = self._tables.get(table, {}).get(key, self.values.get(f"{table}.{key}"))
         return given if isinstance(given, list | tuple) else ()
 
-    def _built(self, case: PlanarRun | SpatialRun) -> None:
-        """Raise if the parts of a case cannot be made."""
+    def _built(self, case: study.PlanarRun | study.SpatialRun) -> None:
         folder = self._file.path.parent
-        if isinstance(case, SpatialRun):
+        if isinstance(case, study.SpatialRun):
             case.case(folder, "study")
             return
         case.physics(folder)
@@ -335,8 +311,8 @@ class _Base:
             base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._file.path.parent / case, "case file")
-            checked_run(_without_model(file), file.place)  # errors are on its own lines
-            base = {name: t for name, t in file.tables.items() if name in RUN_TABLES}
+            study.checked_run(_without_model(file), file.place)  # errors are on its own lines
+            base = {name: t for name, t in file.tables.items() if name in study.RUN_TABLES}
         else:
             here, more = self._file.place(["study", "case"]), ", or the path of a .toml file"
             remedy = "leave it out to describe the case here"
@@ -359,10 +335,10 @@ class _Base:
         return str((self._file.path.parent / name).resolve())
 
 
-def _plain(case: PlanarRun | SpatialRun) -> dict[str, Any]:
+def _plain(case: study.PlanarRun | study.SpatialRun) -> dict[str, Any]:
     """The tables of a case as plain numbers and words, a motion in natural units."""
-    tables = case.model_dump(include={*RUN_TABLES} - {"motion"})
-    if isinstance(case, SpatialRun):
+    tables = case.model_dump(include={*study.RUN_TABLES} - {"motion"})
+    if isinstance(case, study.SpatialRun):
         return {name: table for name, table in tables.items() if table is not None}
     del tables["whisk" if case.whisk is None else "sweep"]  # one of them is the way
     if case.motion is not None:
@@ -372,7 +348,7 @@ def _plain(case: PlanarRun | SpatialRun) -> dict[str, Any]:
 
 def _by_component(key: str, value: object) -> dict[str, object]:
     """What is said of a key, or of its components by their own keys."""
-    if isinstance(value, dict) and value and value.keys() <= {*COMPONENTS_OF}:
+    if isinstance(value, dict) and value and value.keys() <= {*study.COMPONENTS_OF}:
         return {f"{key}.{component}": inner for component, inner in value.items()}
     return {key: value}
 

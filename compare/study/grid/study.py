@@ -101,7 +101,7 @@ class SensorNoise(Table):
 
 
 def _known(name: str) -> str:
-    from analytic.from_clamp.earlier.methods import NAMES  # slow to load, and few studies name one
+    from analytic.from_clamp.earlier import NAMES  # slow to load, and few studies name one
 
     if name not in NAMES:
         raise ValueError(f"a method is one of {', '.join(NAMES)}")

@@ -69,7 +69,6 @@ class Database:
             yield self.rows
 
     def done(self) -> set[str]:
-        """Find the runs that need not be done again."""
         return {run for (run,) in self._connection.execute("SELECT run FROM runs WHERE done")}
 
     def _take_over(self, aside: Path) -> None:

@@ -74,7 +74,6 @@ class Store:
 
 @contextmanager
 def _in_one_line(folder: Path) -> Iterator[None]:
-    """A full or read-only disk in one line."""
     try:
         yield
     except (OSError, sqlite3.DatabaseError) as error:

@@ -14,17 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
-from compare.study.show.results import (
-    AXES,
-    WORST,
-    Line,
-    Question,
-    StudyResults,
-    lines,
-    plane,
-    together,
-    words,
-)
+from compare.study.show import results
 from compare.study.show.sentences import pareto_front
 
 Drawings: TypeAlias = dict[str, Callable[[], Figure]]
@@ -34,11 +24,11 @@ _MARKED = 25  # points of a line up to which each is marked
 _MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
 
-def axis_pictures(found: StudyResults, question: Question) -> Drawings:
+def axis_pictures(found: results.StudyResults, question: results.Question) -> Drawings:
     """Draw the number that answers a question over each axis by itself."""
     drawn: Drawings = {}
     for axis in found.plain_axes:
-        cut = lines(found, axis, question.metric)
+        cut = results.lines(found, axis, question.metric)
         if cut:
             drawn[axis] = partial(_over_axis, found, question, axis, cut)
         if sum(int(line.table["runs"].sum()) for line in cut) == len(found.done):
@@ -46,40 +36,40 @@ def axis_pictures(found: StudyResults, question: Question) -> Drawings:
     return drawn
 
 
-def maps(found: StudyResults, question: Question) -> Drawings:
+def maps(found: results.StudyResults, question: results.Question) -> Drawings:
     """Draw the number that answers a question over each pair of axes with many values."""
     drawn: Drawings = {}
     for beam, done in found.by_beam(question.metric):
         many = [axis for axis in found.plain_axes if done[axis].nunique() >= _MAP_FROM]
         for across, up in combinations(many, 2):
             sampled = {across, up} <= set(found.sampled)
-            if not sampled and together(done, across, up):
+            if not sampled and results.together(done, across, up):
                 continue  # zipped: the lines show it
-            held, shown = plane(found, done, (across, up), question.metric)
-            title = ", ".join(filter(None, (beam, f"at {words(held)}" if held else "")))
+            held, shown = results.plane(found, done, (across, up), question.metric)
+            title = ", ".join(filter(None, (beam, f"at {results.words(held)}" if held else "")))
             name = " ".join(filter(None, ("map", across, up, beam)))
             drawn[name] = partial(_map, shown, across, up, question, title)
     return drawn
 
 
-def timed(found: StudyResults) -> pd.DataFrame:
+def timed(found: results.StudyResults) -> pd.DataFrame:
     """The simulated runs whose time and error are known."""
-    if WORST not in found.done or "seconds_candidate" not in found.done:
+    if results.WORST not in found.done or "seconds_candidate" not in found.done:
         return pd.DataFrame()
-    done = found.done.dropna(subset=["seconds_candidate", WORST])
-    return done[(done["seconds_candidate"] > 0) & (done[WORST] > 0)]
+    done = found.done.dropna(subset=["seconds_candidate", results.WORST])
+    return done[(done["seconds_candidate"] > 0) & (done[results.WORST] > 0)]
 
 
-def error_against_time(found: StudyResults, done: pd.DataFrame) -> Figure:
+def error_against_time(found: results.StudyResults, done: pd.DataFrame) -> Figure:
     """Draw every simulated run by its time and its error, and the front that none of them beats."""
     figure = Figure(figsize=(5.6, 3.9), layout="constrained")
     ax = figure.subplots()
-    for colour, (beam, group) in zip(SERIES, found.by_beam(WORST), strict=False):
+    for colour, (beam, group) in zip(SERIES, found.by_beam(results.WORST), strict=False):
         runs = group[group.index.isin(done.index)]
-        ax.plot(runs["seconds_candidate"], runs[WORST], "o", color=colour, alpha=0.6,
+        ax.plot(runs["seconds_candidate"], runs[results.WORST], "o", color=colour, alpha=0.6,
                 markersize=4, label=f"{beam}: {len(runs)} runs")  # fmt: skip
-    front = pareto_front(done, "seconds_candidate", WORST)
-    ax.plot(front["seconds_candidate"], front[WORST], color=INK, linewidth=1.2,
+    front = pareto_front(done, "seconds_candidate", results.WORST)
+    ax.plot(front["seconds_candidate"], front[results.WORST], color=INK, linewidth=1.2,
             drawstyle="steps-post", label="best error for the time")  # fmt: skip
     ax.set(xscale="log", yscale="log", xlabel="time of the simulated sweep [s]")
     ax.set_ylabel("worst reading's rms\n/ largest magnitude")
@@ -87,7 +77,9 @@ def error_against_time(found: StudyResults, done: pd.DataFrame) -> Figure:
     return figure
 
 
-def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Line]) -> Figure:
+def _over_axis(
+    found: results.StudyResults, question: results.Question, axis: str, cut: list[results.Line]
+) -> Figure:
     figure = Figure(figsize=(4.6, 3.5), layout="constrained")
     ax = figure.subplots()
     beams = list(dict.fromkeys(line.beam for line in cut))
@@ -119,7 +111,7 @@ def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Lin
     ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
     held = {key: value for key, value in cut[0].held.items() if key != varying}
     if held:
-        ax.set_title(f"at {label(words(held))}", fontsize=SMALL)
+        ax.set_title(f"at {label(results.words(held))}", fontsize=SMALL)
     if len(cut) > 1:
         title = _label(varying) if varying else None
         figure.legend(
@@ -135,7 +127,9 @@ def _from(table: pd.DataFrame, least: float) -> pd.DataFrame:
     return table.assign(**{name: table[name].clip(lower=least) for name in drawn})
 
 
-def _map(done: pd.DataFrame, across: str, up: str, question: Question, title: str) -> Figure:
+def _map(
+    done: pd.DataFrame, across: str, up: str, question: results.Question, title: str
+) -> Figure:
     figure = Figure(figsize=(5.4, 4.0), layout="constrained")
     ax = figure.subplots()
     column = question.metric
@@ -192,4 +186,4 @@ def _spans_decades(values: pd.Series) -> bool:
 
 
 def _label(axis: str) -> str:
-    return AXES.get(axis, label(axis))
+    return results.AXES.get(axis, label(axis))

@@ -67,14 +67,11 @@ class StudyResults:
 
 
 def together(done: pd.DataFrame, one: str, other: str) -> bool:
-    """Say whether two axes are zipped."""
     return int(done.groupby(one)[other].nunique().max()) == 1
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question and the number that answers it."""
-
     name: str  # what its pictures' files are called
     text: str  # as a heading
     metric: str  # A column of the runs
@@ -91,7 +88,6 @@ AXES: dict[str, str] = _WORDS["axes"]
 
 
 def asked(found: StudyResults) -> list[Question]:
-    """Choose the questions that a study has an answer to."""
     chosen = []
     for question in QUESTIONS:
         if question.metric in found.done:
@@ -110,8 +106,6 @@ _LINES = {1: 5, 2: 3}  # lines a beam, by the number of beams; more cannot be di
 
 @dataclass(frozen=True)
 class Line:
-    """One number over one axis."""
-
     beam: str  # whose it is; ``""`` in a study without simulation
     # Values of the other axes; those that are not here are repeated or sampled.
     held: dict[str, float]

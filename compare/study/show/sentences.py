@@ -109,7 +109,6 @@ def varied(found: StudyResults) -> str:
 
 
 def headline(found: StudyResults, question: Question) -> str:
-    """Say what answers a question, beam by beam."""
     if question.name == "phase-b":
         return _phase_b(found)
     said = []

@@ -18,7 +18,7 @@ from compare.show.document import (
     Verdict,
     sections,
 )
-from compare.show.page import html, png, write_all
+from compare.show.page import Content, write_all
 from compare.study.keep.database import Warn
 from compare.study.keep.store import read_plan, read_rows
 from compare.study.show import pictures
@@ -48,17 +48,13 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
         "curves": curves(found, [question.metric for question in asked(found)]),
     }
     document = _document(found, numbers)
-    contents: dict[str, str | bytes] = {
-        f"{shows.replace(' ', '-')}.png": png(figure)
+    contents: dict[str, Content] = {
+        f"report/{shows.replace(' ', '-')}.png": figure
         for picture in document.pictures()
         for shows, figure in picture.figures.items()
     }
-    for name, table in numbers.items():
-        if not table.empty:
-            contents[f"{name}.csv"] = table.to_csv(index=False)
-    page, place = html(document), place or folder
-    write_all(place / "report", contents)
-    return write_all(place, {"report.html": page})[-1]
+    contents |= {f"report/{name}.csv": one for name, one in numbers.items() if not one.empty}
+    return write_all(place or folder, {**contents, "report.html": document})[-1]
 
 
 def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document:

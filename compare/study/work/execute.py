@@ -33,8 +33,6 @@ _CHATTY = ("distributed", "distributed.client", "tornado.application", "asyncio"
 
 @dataclass(frozen=True)
 class Crew:
-    """Who does the runs."""
-
     submit: Callable[[Task, Study, tuple[PlannedRun, ...]], Future[list[Result]]]
     task: Task  # what a worker does with some runs
     ahead: int  # how many tasks are handed out at once; memory is that of so many
@@ -64,7 +62,6 @@ def _local_ending(error: BaseException, study: Study) -> tuple[Outcome, str]:
 
 
 def dask_crew(address: str) -> Crew:
-    """Hire the workers of a Dask cluster."""
     try:
         from distributed import Client, KilledWorker
     except ImportError as error:

@@ -102,8 +102,6 @@ _BOUNCES = 0.1
 
 @dataclass(frozen=True)
 class Result:
-    """A run's row, and its readings if they are to be kept."""
-
     row: Row
     readings: dict[str, Readings | SpatialReadings] = field(default_factory=dict)
 
@@ -156,7 +154,6 @@ def perform(study: Study, run: PlannedRun, known: Known = NOTHING, spent: float 
 
 
 def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
-    """Make the row of a run that left none itself."""
     return Result({"run": run.id, "outcome": outcome, "reason": reason, **run.parameters})
 
 
@@ -178,7 +175,8 @@ def _measure(
         row |= metrics.events(events, physics.beam.length, direction)
     if along_line and study.events_only:
         return row
-    reference = known.reference or _solved(run)
+    solver: Any = solve_space if isinstance(run, SpatialRun) else solve_sweep
+    reference = known.reference or solver(run.case(Path(), "run"))
     if "events" in study.record and isinstance(reference, SpatialReadings):
         row |= metrics.events_in_space(reference)
     elif "events" in study.record and not along_line:
@@ -188,7 +186,6 @@ def _measure(
         begin = time.perf_counter()
 
         def ask_the_time() -> None:
-            """Between stations."""
             if time.perf_counter() > begin + study.timeout:
                 raise _TimeIsUp
 
@@ -206,12 +203,6 @@ def _measure(
     if "reconstruction" in study.record:
         row |= metrics.reconstruction(candidate, method, run.noise.relative)
     return row
-
-
-def _solved(run: PlanarRun | SpatialRun) -> Readings | SpatialReadings:
-    if isinstance(run, SpatialRun):
-        return solve_space(run.case(Path(), "run"))
-    return solve_sweep(run.case(Path(), "run"))
 
 
 def _simulated(

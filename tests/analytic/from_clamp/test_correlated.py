@@ -7,8 +7,8 @@ import pytest
 from scipy.signal import lfilter
 
 from analytic import CLAMP_READINGS, named_case, solve_sweep
+from analytic.from_clamp.calibration.best import foot_jitter
 from analytic.from_clamp.correlated import estimate
-from analytic.from_clamp.jitter import foot_jitter
 
 NOISE = 0.01  # of each reading's largest magnitude
 ZERO = 1e-3  # the same

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from analytic import Beam, Case, circle, named_case, solve_sweep
-from analytic.from_clamp.earlier import integrated, segments, small_deflection
-from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
+from analytic.from_clamp import earlier
+from analytic.from_clamp.earlier import Answer, LoadedStations
 
 THIN = Beam(radius=0.0)
 
@@ -41,12 +41,12 @@ CONTOURS = {"catenary": named_case("catenary").profile, "circle": circle(1.0, (0
     ("method", "contour", "median", "worst"),
     [
         # Median and worst error over the first tip phase [L], from an independent program.
-        (small_deflection.from_moment_and_travel, "catenary", 0.28, 0.64),
-        (small_deflection.from_force_and_moment, "catenary", 0.68, 1.7),
-        (small_deflection.from_beam_column, "catenary", 0.041, 0.15),
-        (small_deflection.from_moment_and_travel, "circle", 0.039, 0.10),
-        (small_deflection.from_force_and_moment, "circle", 0.076, 0.17),
-        (small_deflection.from_beam_column, "circle", 0.003, 0.021),
+        (earlier.from_moment_and_travel, "catenary", 0.28, 0.64),
+        (earlier.from_force_and_moment, "catenary", 0.68, 1.7),
+        (earlier.from_beam_column, "catenary", 0.041, 0.15),
+        (earlier.from_moment_and_travel, "circle", 0.039, 0.10),
+        (earlier.from_force_and_moment, "circle", 0.076, 0.17),
+        (earlier.from_beam_column, "circle", 0.003, 0.021),
     ],
 )
 def test_errors_over_the_first_tip_phase(method, contour, median, worst):
@@ -59,7 +59,7 @@ def test_errors_over_the_first_tip_phase(method, contour, median, worst):
 @pytest.mark.parametrize("contour", CONTOURS)
 def test_integration_finds_the_contact(contour):
     table, given = swept(CONTOURS[contour])
-    found = errors(integrated.up_to_zero(given), table)
+    found = errors(earlier.up_to_zero(given), table)
     assert np.median(found) < 1e-12
     assert found.max() < 1e-10
 
@@ -89,10 +89,10 @@ def held(height, delta):
 @pytest.mark.parametrize(
     ("method", "order"),
     [
-        (small_deflection.from_moment_and_travel, 2),
-        (small_deflection.from_slope_and_travel, 2),
-        (small_deflection.from_force_and_moment, 2),
-        (small_deflection.from_beam_column, 3),
+        (earlier.from_moment_and_travel, 2),
+        (earlier.from_slope_and_travel, 2),
+        (earlier.from_force_and_moment, 2),
+        (earlier.from_beam_column, 3),
     ],
 )
 def test_order_in_the_deflection(method, order):
@@ -106,8 +106,8 @@ def test_order_in_the_deflection(method, order):
 
 def test_the_slope_next_to_the_clamp_is_the_moment():
     _, given = swept(CONTOURS["circle"])
-    near = small_deflection.from_slope_and_travel(given, sensor=1e-6)
-    assert near.y == pytest.approx(small_deflection.from_moment_and_travel(given).y, rel=1e-5)
+    near = earlier.from_slope_and_travel(given, sensor=1e-6)
+    assert near.y == pytest.approx(earlier.from_moment_and_travel(given).y, rel=1e-5)
 
 
 @pytest.mark.parametrize("lever", [0.2, 0.5, 0.9])
@@ -119,7 +119,7 @@ def test_a_cone_is_deflected_as_its_differential_equation_says(lever):
 
     found = solve_ivp(rate, (0, lever), [0, 0], "DOP853", rtol=1e-13, atol=1e-16).y[0, -1]
     one = np.ones(1)
-    answer = small_deflection.from_force_and_moment_of_cone(
+    answer = earlier.from_force_and_moment_of_cone(
         LoadedStations(0 * one, force * one, 0 * one, force * lever * one, 0 * one)
     )
     assert answer.x[0] == pytest.approx(found, rel=1e-11)
@@ -128,7 +128,7 @@ def test_a_cone_is_deflected_as_its_differential_equation_says(lever):
 
 def test_binary_contact_is_exact_at_the_first_contact():
     table, given = swept(CONTOURS["catenary"])
-    found = errors(small_deflection.binary(given), table)
+    found = errors(earlier.binary(given), table)
     assert found[0] < 0.02  # within a station of it
     assert found[-1] > 0.5
 
@@ -140,7 +140,7 @@ def test_order_in_the_segments_at_tangential_contacts(half_cell, order):
     given, table = LoadedStations(*(values[tangent] for values in given)), table[tangent]
     error = []
     for number in (20, 40, 80):
-        found = errors(segments.by_segments(given, number, half_cell), table)
+        found = errors(earlier.by_segments(given, number, half_cell), table)
         assert np.isfinite(found).mean() > 0.95
         error.append(np.nanmedian(found))
     observed = np.log2(np.divide(error[:-1], error[1:]))
@@ -151,8 +151,10 @@ def contact_under(force, arc_length, number, half_cell):
     """Where the model has the contact, given the force's size and place: its forward problem."""
     whole = np.floor(arc_length * number + 1e-9)
     half = 0.5 / number if half_cell else 0.0
-    bent = segments.bent(force, np.maximum(arc_length - whole / number, 0.0), whole, number, half)
-    return Answer(*segments.from_base(bent))
+    bent = earlier.bent_from(
+        force, np.maximum(arc_length - whole / number, 0.0), whole, number, half
+    )
+    return Answer(*earlier.from_base(bent))
 
 
 @pytest.mark.parametrize(
@@ -192,6 +194,6 @@ def test_segments_do_not_find_the_tip():
     table, given = swept(CONTOURS["catenary"])
     tip = (table["phase"] == "tip").to_numpy()
     given = LoadedStations(*(values[tip] for values in given))
-    found = errors(segments.by_segments(given, 160, half_cell=True), table[tip])
+    found = errors(earlier.by_segments(given, 160, half_cell=True), table[tip])
     assert np.isnan(found).mean() > 0.5
     assert np.nanmin(found) > 0.01

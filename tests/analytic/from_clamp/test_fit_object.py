@@ -109,7 +109,8 @@ def test_passes_are_pooled_and_held_against_each_other():
     assert widths[1] == pytest.approx(widths[0] / 2, rel=0.4)
     assert four.passes.consistent
     moved = passes(4)
-    moved[2].table["foot_x"] += 3e-4
+    later = moved[2].table["foot_x"] + 3e-4
+    moved[2] = replace(moved[2], table=moved[2].table.assign(foot_x=later))
     apart = fit_object(moved, "circle")
     assert not apart.passes.consistent
     assert apart.passes.farthest == 2

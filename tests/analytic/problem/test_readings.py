@@ -35,6 +35,17 @@ def test_round_trip(tmp_path, suffix):
     assert [path.name for path in tmp_path.iterdir()] == [f"sweep.{suffix}"]
 
 
+def test_who_changes_a_table_changes_their_own():
+    """A fault planted in a sweep's table was in the sweep, too, which agreed with it to 0.0."""
+    sweep = solve_sweep(named_case("parabola"))
+    before, table = sweep.values("force_x").copy(), sweep.table
+    table["force_x"] *= 2.0
+    assert (sweep.values("force_x") == before).all()
+    mine = Readings(table, sweep.beam)
+    table["force_x"] = 0.0
+    assert (mine.values("force_x") == 2.0 * before).all()
+
+
 def test_measured_data_need_four_columns_only(tmp_path):
     """A cell may be missing; a row without a foot position is dropped and counted."""
     path = tmp_path / "rig.csv"
@@ -210,7 +221,7 @@ def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_threads_that_ask_at_once_get_the_same_table():
+def test_threads_that_ask_at_once_get_the_same_numbers():
     """What is made when first asked for is made by whoever comes first."""
     for _ in range(20):
         readings, together = solve_sweep(named_case("catenary")), Barrier(4)
@@ -221,4 +232,7 @@ def test_threads_that_ask_at_once_get_the_same_table():
 
         with ThreadPoolExecutor(4) as threads:
             found = list(threads.map(ask, range(4)))
-        assert all(t is readings.table and p is readings.provenance for t, p in found)
+        made = readings.values("force_x")  # a view
+        for table, provenance in found:
+            assert provenance is readings.provenance
+            assert np.shares_memory(table["force_x"].to_numpy(), made)

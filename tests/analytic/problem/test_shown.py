@@ -83,7 +83,7 @@ def test_who_only_solves_loads_no_pictures():
             lambda: Readings.of({name: [1, 0] for name in ("footx", *CLAMP_READINGS)}),
             "add foot_x (is it footx?)",
         ),
-        (lambda: named_case("q"), "see `vibrissa list cases`"),
+        (lambda: named_case("q"), "`compare.load_case` reads a TOML file"),
     ],
 )
 def test_errors_suggest_the_nearest_name(wrong, near):

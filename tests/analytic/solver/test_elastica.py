@@ -15,7 +15,7 @@ from analytic.solver.elastica import (
     span_of_moment,
     tangent_span,
 )
-from analytic.solver.tip import greatest_height, tip_state
+from analytic.solver.equilibria import greatest_height, tip_state
 
 ANGLES = st.floats(-1.5, 1.5)
 FRACTIONS = st.floats(1e-6, 1.0)

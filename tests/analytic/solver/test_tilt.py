@@ -52,7 +52,7 @@ def test_refused(tilt):
 def test_mujoco_slips_off_there():
     """MuJoCo's own motion of a chain on a leaning foot, station by station."""
     from analytic import Case
-    from analytic.problem.poses import Pose
+    from analytic.problem.clamp_path import Pose
     from mujoco_models import Settings
     from mujoco_models.beams.protocol import FOOT
     from mujoco_models.sweep.spatial_walk import GENTLE_STEP

@@ -19,7 +19,7 @@ from analytic.space import (
     write_ply,
 )
 from analytic.space.from_clamp.cloud import Cloud
-from analytic.space.from_clamp.noise import component_noise
+from analytic.space.from_clamp.reconstruct import component_noise
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 from tests.analytic.noisy import noisy
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from analytic.space import cylinder, ellipsoid, polyhedron
-from analytic.space.solver.contact import Scene, contact_at
-from analytic.space.solver.rod import Plane
+from analytic.space.solver.contact import Plane, Scene, contact_at
 from analytic.space.solver.stability import margin, second_variation
 from tests.analytic.space.second_variation import least_eigenvalue
 

@@ -163,9 +163,10 @@ JUMPS_AT = -0.2  # in the last tip phase, where a contact goes from corner to co
 def jumping(x: np.ndarray, place: float = JUMPS_AT, **columns) -> Readings:
     """The same with a jump within a phase."""
     readings = made(x, **columns)
+    table = readings.table
     for name in CLAMP_READINGS:
-        readings.table[name] += np.where((x < place) & (x > BORDERS[-1]), 1.0, 0.0)
-    return readings
+        table[name] += np.where((x < place) & (x > BORDERS[-1]), 1.0, 0.0)
+    return replace(readings, table=table)
 
 
 @pytest.mark.parametrize("stations", [40, 300])
@@ -199,9 +200,12 @@ def test_a_station_that_has_jumped_a_little_early_is_left_out_and_no_other():
 def test_between_stations_too_far_apart_at_a_bend_nothing_is_compared(steps, left_out):
     """The spline of a bend swings out by a tenth of what a station adds, a few stations wide."""
     x, between = np.linspace(1.2, -0.8, steps + 1), np.linspace(1.19, -0.79, 334)
-    reference, candidate = made(x), made(between)
-    for sweep in (reference, candidate):
-        sweep.table["force_y"] += 2 * np.abs(sweep.values("foot_x") - 0.31)
+
+    def bent(sweep: Readings) -> Readings:
+        force = sweep.table["force_y"] + 2 * np.abs(sweep.values("foot_x") - 0.31)
+        return replace(sweep, table=sweep.table.assign(force_y=force))
+
+    reference, candidate = bent(made(x)), bent(made(between))
     found = paired(candidate, reference)
     assert (found.counts["reference_coarse"] > 0) == left_out
     table = found.table
@@ -263,8 +267,8 @@ def on_facets(angles: np.ndarray) -> Readings:
 def test_a_station_on_another_facet_alone_is_left_out(leapt, angle, kept):
     """One sweep holds on longer; of two side by side, of none, or within a side, it is a fault."""
     candidate = on_facets(np.where(np.isin(np.arange(41), leapt), angle, 0.0))
-    for name in CLAMP_READINGS:
-        candidate.table.loc[20, name] += 0.5
-    found = paired(candidate, on_facets(np.zeros(41)))
+    table = candidate.table
+    table.loc[20, list(CLAMP_READINGS)] += 0.5
+    found = paired(replace(candidate, table=table), on_facets(np.zeros(41)))
     assert (20 in found.table["station"].to_numpy()) == kept
     assert found.counts["beside_jump"] == (not kept)

@@ -114,8 +114,8 @@ def test_ten_passes_of_6000_rows_take_less_than_300_mb(folder, tmp_path):
     exact = solve_sweep(Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(200)))
     places = np.linspace(*exact.values("foot_x")[[0, -1]], 6000)
     columns = [np.interp(-places, -exact.values("foot_x"), exact.values(name)) for name in SENSED]
+    columns[1] += 0.02 * np.sin(2 * np.pi * np.arange(6000) / 20)  # hum has columns too
     dense = Readings.of(dict(zip(SENSED, columns, strict=True)), exact.beam)
-    dense.table["force_x"] += 0.02 * np.sin(2 * np.pi * np.arange(6000) / 20)  # hum has columns too
     for i in range(10):
         noisy(dense, relative_noise(dense, 0.01), i).write(tmp_path / f"{i}.parquet")
     # Not `ru_maxrss`, which begins with that of the process that started it.

@@ -133,7 +133,7 @@ def test_the_budget_blames(folder, model, soft, case, blamed):
         (CASE.replace("mine", "yours"), "yours.xml"),
         (CASE + "fot = 'base'\n", "did you mean foot?"),
         (CASE + "contact = 'hard'\n", "model.contact"),
-        (CASE.replace('"100 mm"', '"90 mm"') + "foot = 'hand'\n", "--foot"),
+        (CASE.replace('"100 mm"', '"90 mm"') + "foot = 'hand'\n", "foot of the model"),
         (CASE.replace('"100 mm"', '"80 mm"').replace("40 mm", "30 mm"), "length of the model"),
     ],
 )

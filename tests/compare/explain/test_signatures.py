@@ -21,7 +21,7 @@ def test_a_few_unsolved_stations_are_interpolated_over_and_a_stretch_is_not(
     swept = Readings(table, exact.beam)
     monkeypatch.setattr(signatures, "solve_sweep", lambda case: swept)
     case = replace(named_case("parabola"))  # one that no sweep is kept of
-    at = signatures._at(signatures._sweep(case), exact.values("foot_x")[unsolved])
+    at = signatures.between(exact.values("foot_x")[unsolved], *signatures._sweep(case))
     assert np.isfinite(at).all() == bridged
     if bridged:
         known = [exact.values(name)[unsolved] for name in CLAMP_READINGS]

@@ -69,6 +69,12 @@ def test_lengths_are_in_units_of_the_vibrissa(spoil):
     assert of_length(0.05, spoil) == of_length(1.0, spoil)
 
 
+def test_a_comparison_is_neither_true_nor_false():
+    """``assert compare(...)`` held, whatever was found."""
+    with pytest.raises(TypeError, match=r"take `.agrees`"):
+        assert compare(solved(), solved())
+
+
 def test_the_stations_that_figures_rest_on_are_said():
     wide = Tolerances(rms=1e-3, snap_off_window=0.05)
     found = compare(solved(), scaled(solved(), force_y=1.03), wide)

@@ -1,5 +1,7 @@
 """The mean of passes: what is the same in all is no difference between them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,9 +41,10 @@ def test_hum_moves_no_pass():
     rng, found = np.random.default_rng(3), []
     for one in passes("catenary", 3e-3, rng):
         wave = 0.03 * np.sin(2 * np.pi * np.arange(len(one.table)) / 37.3 + rng.uniform(0, 6))
+        table = one.table
         for name in CLAMP_READINGS:
-            one.table[name] += wave * one.table[name].abs().max()
-        found.append(one)
+            table[name] += wave * table[name].abs().max()
+        found.append(replace(one, table=table))
     several = repeats(found)
     assert several.shifts.consistent
     level = compare(exact_sweep("catenary"), several.mean, noise="auto").noise.level
@@ -53,6 +56,7 @@ def test_a_pass_that_is_unlike_the_others_is_named():
     several = [*passes("catenary", 3e-3, np.random.default_rng(2))]
     table = several[4].table
     table["moment_z"] = np.minimum(table["moment_z"], 0.6 * table["moment_z"].max())
+    several[4] = replace(several[4], table=table)
     found = repeats(several)
     assert (found.farthest, found.left_out > 0.05) == (4, True)
     said = " ".join(str(getattr(one, "said", "")) for one in repeats_summary(found))

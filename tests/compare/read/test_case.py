@@ -81,9 +81,14 @@ def test_a_name_stays_in_its_folder(refused, name):
     assert "line 1: name" in refused(f'name = "{name}"\n{CIRCLE}')
 
 
+def test_a_mark_of_byte_order_is_none_of_the_text(load):
+    assert load("\ufeff" + CIRCLE).case.digest == load(CIRCLE).case.digest
+
+
 def test_files_that_are_none(refused, tmp_path):
     assert "UTF-8" in refused(CIRCLE.encode("utf-16"))
     assert "valid TOML" in refused(CIRCLE.replace("\n", "\r"))
+    assert "in quotes" in refused("[beam]\nlength = 5 cm\n")
     for name in (f"{tmp_path}/case.toml/", str(tmp_path), "/dev/zero"):
         with pytest.raises(InputError):
             load_job(name)

@@ -1,5 +1,7 @@
 """Units are never evaluated, nor is a vibrissa assumed where it cannot be."""
 
+import math
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -150,6 +152,9 @@ def test_columns_that_nobody_named(tmp_path, rig):
         ("1 GPa mm^4", "N m^2", 1e-3),
         ("1 Nm", "N m", 1.0),
         ("1 Nmm", "N m", 1e-3),
+        ("1 Nm²", "N m^2", 1.0),
+        ("1 N⋅mm²", "N m^2", 1e-6),
+        ("180°", "rad", math.pi),
         ("1 mNm", "N m", 1e-3),
         ("1 mNmm", "N m", 1e-6),
     ],
@@ -160,7 +165,7 @@ def test_quantities(text, dimension, value):
 
 @pytest.mark.parametrize(
     "text",
-    ["9**9**9 m", "m**9**9", "1 m**9**9", "((((1 m", "1 m)", '"""', "m", "5", "", "1 kg",
+    ["9**9**9 m", "m**9**9", "1 m**9**9", "((((1 m", "1 m)", '"""', "m", "5", "", "1 kg", "1 degC",
      "1 parsnip", "1e999 m", "nan m", "1 m" + "*m" * 1000, "1 " + "(" * 50,
      "1 m;2", "1 m\n2", "2 2 m"],
 )  # fmt: skip

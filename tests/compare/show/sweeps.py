@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
-from analytic.problem.files import write_whole
 from compare import compare
-from compare.show.page import as_json
-from compare.show.report import budget_files
+from compare.show.budgets import picture
+from compare.show.page import write_all
 from tests.compare.planted import planted
 
 STATIONS = 60
@@ -48,10 +47,10 @@ def two_runs(folder: Path) -> Path:
         simulated = candidate(case)
         run = folder / f"{case}-chain"
         run.mkdir()
-        contents = {"comparison.json": as_json(compare(exact(case), simulated).to_dict())}
-        contents |= {} if budget is None else budget_files(budget)
+        contents = {"comparison.json": compare(exact(case), simulated).to_dict()}
         if budget is None:
             simulated.write(run / "mujoco-chain.parquet")
-        for name, content in contents.items():
-            write_whole(run / name, content)
+        else:
+            contents |= {"budget.json": budget.to_dict(), "budget.png": picture(budget)}
+        write_all(run, contents)
     return folder

@@ -3,7 +3,6 @@
 import json
 import math
 import shutil
-from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -13,6 +12,7 @@ from compare.align.frames import COMPONENTS
 from compare.explain.split import Split
 from compare.read.runs import EngineOutcome, read_runs
 from compare.report import write_report
+from compare.show.page import write_all
 from tests.compare.planted import planted
 from tests.compare.show.pages import Page
 from tests.compare.show.sweeps import two_runs
@@ -88,14 +88,14 @@ def test_damaged_runs_are_named(runs, tmp_path, file, content):
 def engines_left(folder, implementation=1e-9):
     """What a run in MuJoCo and a twin of it leaves, of which one has no readings."""
     rms, apart = (dict.fromkeys(CLAMP_READINGS, x) for x in (2e-3, implementation))
-    others = {"exudyn": dict.fromkeys(CLAMP_READINGS, 5e-5) | {"force_x": math.nan}}
+    others = {"exudyn": dict.fromkeys(CLAMP_READINGS, 5e-5)}
     split = Split("mujoco", "drake", rms, apart, rms, others, None)
     swept = [EngineOutcome(name, "twin", "1.0", "as it is", None, rms, None, 0.01, agrees=True)
              for name in ("mujoco", "drake")]  # fmt: skip
     slow = EngineOutcome("slow", "twin", "1.0", trouble="not finished after 20 s")
-    content = {"case": "catenary", "engines": [*swept, slow], "split": split}
-    folder.mkdir(parents=True)
-    (folder / "engines.json").write_text(json.dumps(content, default=asdict))
+    never = EngineOutcome("never", rms=dict.fromkeys(CLAMP_READINGS, math.nan))
+    content = {"case": "catenary", "engines": [*swept, slow, never], "split": split}
+    write_all(folder, {"engines.json": content})
 
 
 def test_runs_in_many_engines_are_split(tmp_path):
@@ -107,6 +107,7 @@ def test_runs_in_many_engines_are_split(tmp_path):
         "mujoco computes this model right",
         '<th scope="row">slow 1.0, twin</th><td class="text">no readings</td><td>none</td>',
         "not finished after 20 s",
+        '<th scope="row">never</th><td class="text">disagrees</td><td>none</td>',
         "implementation: mujoco against drake",
     ):
         assert said in text

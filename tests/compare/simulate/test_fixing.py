@@ -28,6 +28,8 @@ RAIL = '<joint name="rail" type="slide" axis="1 0 0" armature="1e5"/>'
 WEIGHT = '<inertial pos="0 0 0" mass="1e-3" diaginertia="1e-3 1e-3 1e-3"/>'
 # Swept so, moments were 7 % off.
 LATE = '<force name="F" site="clamp"/><torque name="T" site="clamp" delay="1" nsample="200"/>'
+ANOTHER = '<body name="other"><site name="clamp-force"/></body>'
+NAMED = '<framepos name="clamp-torque" objtype="site" objname="clamp-force"/>'
 delays = pytest.mark.skipif(not hasattr(mujoco.MjModel, "sensor_delay"), reason="MuJoCo is older")
 WRIST = '<actuator><motor joint="wrist"/></actuator></mujoco>'
 MOTOR = '<actuator><velocity joint="rail" kv="1e7"/></actuator></mujoco>'
@@ -129,6 +131,7 @@ def test_a_driven_hinge_between_drive_and_vibrissa_has_to_be_stiff(tmp_path, sti
         ([], {"stiffer": {5: 1.3}}, {"uniformity"}),
         ([], {"gravity": "0 -2 0"}, {"gravity"}),
         ([], {"sensors": ""}, {"force sensor", "torque sensor"}),
+        ([], {"sensors": NAMED, "beside": ANOTHER}, {"force sensor", "torque sensor"}),
         ([], {"site": 'euler="0 0 0.2"'}, {"force sensor", "torque sensor"}),
         ([], {"site": 'pos="0 -0.1 0"'}, {"torque sensor"}),
         ([('damping="0.3', 'damping="9.3')], {}, {"damping"}),

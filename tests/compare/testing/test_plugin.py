@@ -86,6 +86,10 @@ def test_it(vibrissa_sweep, again):
     seen.append(vibrissa_sweep())
     assert seen[0] is seen[-1]
 """
+WORDS = """
+@pytest.mark.vibrissa('tip-only')
+def test_it(vibrissa_sweep): assert vibrissa_sweep(segments=2).source == 'mujoco chain'
+"""
 GIVEN = """
 import analytic
 exact = analytic.solve_sweep(analytic.named_case('tip-only'))
@@ -110,6 +114,7 @@ def test_it(vibrissa_engine_sweep): vibrissa_engine_sweep()
         (CASES, (), {"passed": 6}, ()),
         (CASES, ("--vibrissa-case", "parabola", "-s"), {"passed": 2}, ("*case parabola*",)),
         (TWICE, (), {"passed": 2}, ()),  # each sweep is made once
+        (WORDS, (), {"passed": 1}, ()),
         (GIVEN, ("--tb=line",), {"passed": 1, "failed": 4},
          ("*give a reference, or let the test use `vibrissa_case`*",
           *["*InputError: candidate = *: must be a Readings; *"] * 3)),

@@ -7,8 +7,7 @@ import pytest
 
 from analytic import Case, InputError, named_case, polygon
 from engines.found import installed
-from engines.precision.evaluators import evaluators
-from engines.precision.gate import by_stiffness, gate
+from engines.precision.gate import by_stiffness, evaluators, gate
 from engines.precision.resolution import chance_of_loss, force_deviation
 from engines.precision.state import Evaluate, State
 from mujoco_models import Settings
@@ -120,7 +119,7 @@ def test_the_chances_are_those_of_many_throws():
 )
 def test_what_cannot_be_looked_at_is_a_line(case, settings, says):
     with pytest.raises(InputError, match=says):
-        gate(case, settings, {})
+        gate(case, settings, {}, STIFFNESSES)
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Case, ClampPath, Whisk, circle
+from analytic import CLAMP_READINGS, Case, ClampPath, Sweep, Whisk, circle
 from compare.simulate.dispatch import softened
 from mujoco_models import Motion, Settings, simulate_motion, simulate_sweep
 
@@ -15,7 +15,7 @@ MOVES = Case(profile=CIRCLE, sweep=ClampPath(0.6 - 0.3 * _S, 0.05 * _S**2, 1.4 *
 
 
 def test_a_path_along_x_moves_as_the_sweep():
-    sweep = Case(profile=CIRCLE).between(1.0, -1.0, 9)
+    sweep = Case(profile=CIRCLE, sweep=Sweep(9, 1.0, -1.0))
     path = Case(profile=CIRCLE, sweep=ClampPath(sweep.foot_x, np.zeros(9), np.zeros(9)))
     motion = Motion(speed=0.5)
     expected, found = (simulate_motion(case, motion, SETTINGS) for case in (sweep, path))

@@ -223,8 +223,8 @@ TWO = Chain(foot="", sensors="").text("other")
     [
         (Chain(), {"foot": "whisker-fot"}, "did you mean whisker-foot?"),
         (Chain(), {"force": "T"}, "it is no <force>"),
-        (Chain(), {"torque": "X"}, "--torque = 'X'"),
-        (Chain(), {"geoms": "hair*"}, "--geoms = 'hair\\*'"),
+        (Chain(), {"torque": "X"}, "torque sensor of the model = 'X'"),
+        (Chain(), {"geoms": "hair*"}, "geoms of the model = 'hair\\*'"),
         (Chain(), {"foot": "whisker5"}, "without a vibrissa where the names say"),
         (Chain(links=2), {}, "without a vibrissa: must be with a row of at least 3"),
         (Chain(stiffer={4: 0.0}), {}, "body 'whisker4' of the vibrissa = without a stiffness"),

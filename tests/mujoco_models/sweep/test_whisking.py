@@ -10,6 +10,7 @@ from analytic import (
     Beam,
     Case,
     ClampPath,
+    Sweep,
     Whisk,
     circle,
     named_case,
@@ -59,7 +60,7 @@ def swept(name, segments, springs="linear"):
 @pytest.mark.parametrize("angle", [pytest.param(0.0, marks=pytest.mark.slow), 0.2])
 def test_a_path_at_one_angle_is_a_sweep(beam, angle):
     """To the tolerance of rest; to the last bit where the path's travel does not round."""
-    sweep = Case(Beam(natural_curvature=-0.2), CIRCLE, clamp_angle=angle).between(1.1, -1.3, 12)
+    sweep = Case(Beam(natural_curvature=-0.2), CIRCLE, Sweep(12, 1.1, -1.3), clamp_angle=angle)
     path = ClampPath(sweep.foot_x, np.zeros(12), np.full(12, angle))
     settings = Settings(beam=beam, segments=20)
     expected, found = (

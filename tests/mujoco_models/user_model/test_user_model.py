@@ -265,7 +265,7 @@ def test_files_are_left_alone(tmp_path):
         (Chain(foot="", inside_foot="<freejoint/>"), {}, "weld it to a mocap body"),
         (Chain(sensors='<force name="F" site="clamp"/>'), {}, "torque sensor .* missing"),
         (Chain(foot=""), {}, "touch|can be moved|exclude"),
-        (Chain(), {"foot": "hand"}, "--foot = 'hand'"),
+        (Chain(), {"foot": "hand"}, "foot of the model = 'hand'"),
         (Chain(rigidity=1e4), {}, "^time step of the model = 0.01, 1 of .* at most 0.000999"),
     ],
 )

@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import positive
+from analytic.problem.numbers import Vector, axes, positive, vector
 from analytic.space.problem.bodies.body import Body, Spot, flat_spot, grid_patches, sphere_grid
-from analytic.space.problem.numbers import Vector, axes, vector
 
 _STEPS = 60  # of Newton's method, from below: it cannot overshoot
 _EPS = float(np.finfo(float).eps)

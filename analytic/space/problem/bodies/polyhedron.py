@@ -11,10 +11,8 @@ from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import hull_of, read_body
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import positive, within
-from analytic.space.problem.bodies.body import Body, Spot, flat_spot
-from analytic.space.problem.bodies.feature import Feature
-from analytic.space.problem.numbers import Vector, vector
+from analytic.problem.numbers import Vector, positive, vector, within
+from analytic.space.problem.bodies.body import Body, Feature, Spot, flat_spot
 
 _ON_PLANE = 1e-9  # of the extent: so near to a plane a point is on it
 _PARALLEL = 1e-9  # rad; a step that rises less from a plane is along it, and such faces are one

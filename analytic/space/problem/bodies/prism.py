@@ -9,10 +9,8 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.polygon import Polygon
 from analytic.problem.errors import require
-from analytic.problem.numbers import positive
-from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
-from analytic.space.problem.bodies.feature import Feature
-from analytic.space.problem.numbers import Vector, direction, vector
+from analytic.problem.numbers import Vector, direction, positive, vector
+from analytic.space.problem.bodies.body import Body, Feature, Spot, across, grid_patches
 
 _PLACES = 33  # of the contour, to begin with: NumPy takes hardly longer for them than for one
 _ROUNDING = float(np.finfo(float).eps)  # of a parameter, relative to its range
@@ -59,7 +57,6 @@ class Prism(Body):
 
     @property
     def smooth(self) -> bool:
-        """Not with the contour of a polygon."""
         return not isinstance(self.contour, Polygon)
 
     def nearest(self, x: Floats, apart: float) -> Spot:

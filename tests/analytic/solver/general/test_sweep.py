@@ -25,9 +25,9 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
+from analytic.problem.beam import Unloaded
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.unloaded import Unloaded
 from tests.analytic.solver.general.sound import READ, assert_sound
 
 SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])

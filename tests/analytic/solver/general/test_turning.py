@@ -29,6 +29,7 @@ from analytic import (
     turn_back,
 )
 from analytic.from_clamp.shape import deflected_shapes
+from analytic.problem.reach import between
 from compare import compare
 from compare.simulate.dispatch import simulate
 from engines.apart import _sweep
@@ -206,7 +207,7 @@ def test_who_knows_no_way_but_a_sweep_says_so():
         lambda: calibrate(readings, case, ["flexural_rigidity"]),
         lambda: calibrate(plain, case, ["flexural_rigidity"]),
         lambda: turn_back(Case(sweep=case.sweep, friction=0.1), 0.0),
-        lambda: case.between(1.0, 0.0),
+        lambda: between(case, 1.0, 0.0),
         lambda: reconstruct(readings, method="decision"),
     ):
         with pytest.raises(InputError, match=r"along its line|Sweep"):

@@ -24,14 +24,14 @@ from analytic import (
     polygon,
     solve_sweep,
 )
+from analytic.problem.beam import Unloaded
 from analytic.problem.rest import first_touch
 from analytic.problem.rod import RodProperties
 from analytic.problem.support import Support
-from analytic.problem.unloaded import Unloaded
 from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
-from analytic.solver.general.march import march
 from analytic.solver.general.path import follow
+from analytic.solver.general.span import march
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.states import states as states_of
 from analytic.solver.general.stations import solve_places

@@ -128,7 +128,7 @@ def test_a_run_keeps_its_id_wherever_its_numbers_stand(plan_of):
         ("[nois]\nrelative = 0\n", ["line 2", "did you mean noise"]),
         ("[beam]\nlength = 0\n", ["line 3", "beam.length"]),
         ("[axes\n", ["line 2", "valid TOML"]),
-        ("axes = {}\n", ["line 2", "axes", "at least 1"]),
+        ("axes = {}\n", ["line 2", "axes = {}: must be not empty"]),
         ("[axes]\nbeam = {}\n", ["line 3", "a key of"]),
         ("[axes]\nbeam.radius = {}\n", ["line 3", "axes.beam.radius", "missing"]),
         ("[axes]\nbeam.radius.x = [1]\n", ["line 3", "beam.radius"]),

@@ -139,8 +139,9 @@ def test_whatever_else_goes_wrong_is_an_outcome(plan_of, monkeypatch):
 def test_a_simulation_that_does_not_trust_itself(plan_of, monkeypatch, status):
     def doubtful(case, settings, advance, keep):
         readings = simulate_sweep(case, settings, advance)
-        readings.table.loc[:9, "status"] = status
-        return readings
+        table = readings.table
+        table.loc[:9, "status"] = status
+        return replace(readings, table=table)
 
     monkeypatch.setattr("compare.simulate.dispatch.simulate_sweep", doubtful)
     row = perform(*only(plan_of(ONE_SIMULATION))).row
