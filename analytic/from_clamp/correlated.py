@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp, softmax
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 
 _MEMORY = np.array([0.5, 0.75, 0.87, 0.93, 0.965, 0.983, 0.992, 0.9965, 0.9995])
 _SIZES = np.array([0.1, 0.3, 1, 3, 10, 30, 1e2, 1e3, 1e4, 1e5])  # variance over that of the white
@@ -136,7 +136,8 @@ def estimate(
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
     # The noise is what each pass's own numbers leave: passes that differ are no noise.
     left, logarithm = _without_nuisances(gram, prior, 0)
-    freedom = len(columns) - len(rows) * int(np.sum(prior[:-1] == 0))
+    free = np.einsum("pcmm->pcm", gram[:, 0])[..., :-1][..., prior[:-1] == 0] > _RANK
+    freedom = len(columns) - free.sum(axis=(0, 2))
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
     if least:
@@ -149,7 +150,7 @@ def estimate(
     drawn = []
     for channel in range(readings.shape[1]):
         at = draw.choice(len(_GRID), size=draws, p=likely[:, channel])
-        variance = square[at, channel] / draw.chisquare(freedom, size=draws)
+        variance = square[at, channel] / draw.chisquare(freedom[channel], size=draws)
         drawn.append((at, channel, variance[:, None, None]))
     systems = (sum(one[at, channel] / size for at, channel, size in drawn) for one in gram)
     one_by_one = _without_nuisances(systems, prior, known)[0]
@@ -239,8 +240,11 @@ def _without_nuisances(grams: Iterable[Floats], prior: Floats, known: int) -> tu
     for gram in grams:
         normal = gram + np.diag(prior)
         inner, beside = normal[..., known:-1, known:-1], normal[..., known:-1, kept]
-        largest = np.einsum("...ii->...i", inner).max(axis=-1, initial=0.0)
-        inner = inner + _RANK * largest[..., None, None] * np.eye(inner.shape[-1])
+        squares = np.einsum("...ii->...i", inner)
+        rounding = _RANK * squares.max(axis=-1, initial=0.0, keepdims=True)
+        # What a reading does not depend on, says nothing of its noise.
+        apart = np.where(squares <= rounding, 1.0, rounding)
+        inner = inner + apart[..., None] * np.eye(inner.shape[-1])
         left = beside.swapaxes(-1, -2) @ np.linalg.solve(inner, beside)
         found.append(normal[..., kept[:, None], kept] - left)
         logarithms.append(np.linalg.slogdet(inner).logabsdet)
@@ -274,7 +278,7 @@ def _alone(
     return numbers, covariance
 
 
-def _likely(left: Floats, determinants: Floats, freedom: int) -> tuple[Floats, Floats]:
+def _likely(left: Floats, determinants: Floats, freedom: Integers | int) -> tuple[Floats, Floats]:
     """Sums of squares, and logarithms of each noise's likelihood, each shape (grid, channels)."""
     square = np.maximum(left, freedom * _NOISELESS**2)
     logarithms = -(freedom * np.log(square) + determinants) / 2

@@ -14,7 +14,7 @@ _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is lef
 _ZERO = 1e-3  # of a reading's largest magnitude: what its zero is known to, if nothing says
 _SURELY = 1e-6  # of it: no zero is known better
 SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is no noise
-_IDLE = 10  # stations that show how large noise is where nothing touches
+IDLE = 10  # stations that show how large noise is where nothing touches
 # Over the root of their number: three standard deviations of what such a median says of white noise
 _CLEARLY = 3.5
 _WHOLE = 1e-3  # of a step; steps so near to whole multiples of the smallest are a converter's
@@ -57,7 +57,7 @@ def resting_noise(values: Floats, seen: Floats) -> Floats:
     sides = slice(0, contact[0]), slice(contact[-1] + 1, None)
     off = [
         np.where(values[:, side] * values[:, near].sum(axis=1)[:, None] < 0, values[:, side], 0.0)
-        for side, near in zip(sides, (contact[:_IDLE], contact[-_IDLE:]), strict=True)
+        for side, near in zip(sides, (contact[:IDLE], contact[-IDLE:]), strict=True)
     ]
     against = np.abs(np.concatenate(off, axis=1))
     other = np.concatenate([force[side] for side in sides])
@@ -66,7 +66,7 @@ def resting_noise(values: Floats, seen: Floats) -> Floats:
         more = seen.copy()
         for i, row in enumerate(idle):
             row = row[row > 0]
-            if len(row) >= _IDLE:
+            if len(row) >= IDLE:
                 shown = np.median(row) / MEDIAN_OF_NORMAL
                 more[i] = shown if shown > (1 + _CLEARLY / len(row) ** 0.5) * seen[i] else seen[i]
         if (more == seen).all():

@@ -147,7 +147,7 @@ def measured_under_load(
     )
     level = np.hypot(*np.maximum(spread[1:3], free[:2]))
     loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * level))
-    loaded = loaded[: _let_go(force[loaded], _SIGMAS * level)]
+    loaded = loaded[: let_go(force[loaded], _SIGMAS * level)]
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded
     if len(order) < fewest:
@@ -171,7 +171,7 @@ def measured_under_load(
     return Measured(x[order], found, spread, rows, ends, zero, bend, free, vague)
 
 
-def _let_go(force: Floats, least: float) -> int:
+def let_go(force: Floats, least: float) -> int:
     """How many stations there are until the force falls most, to what stays: it lets go there.
 
     Noise that remembers is more than its jumps say, and goes on behind that.

@@ -9,18 +9,21 @@ from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.best import explained_by_noise
 from analytic.from_clamp.calibration.calibrate import Estimate
+from analytic.from_clamp.calibration.measured import let_go
 from analytic.from_clamp.contact import LONGEST
 from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
-from analytic.from_clamp.noise import DOUBLE_SIDED_95
+from analytic.from_clamp.noise import DOUBLE_SIDED_95, IDLE, MEDIAN_OF_NORMAL
 from analytic.from_clamp.passes import left_by_noise
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
 from analytic.space.from_clamp.reconstruct import (
+    COMPONENTS,
     ClampInSpace,
     component_noise,
     felt,
+    least_force,
     of_one_vibrissa,
     over_units,
 )
@@ -36,6 +39,7 @@ _LEAST = 1e-9  # of the largest force or moment; readings without noise count as
 _ZERO = 1e-3  # of the same: what a sensor's zero is known to
 _FAINT = 0.02  # of the largest force: where a zero that drifts looks like a contact
 _CLEAR = 4.0  # standard deviations between a contact at the tip and one before it
+_NEAR = 0.05  # L; noise that moves a contact farther is not where readings are linear in it
 _BESIDE_SLIP_OFF = 0.02  # of the loaded stations: readings grow without bound there
 _STEP = 1e-6  # of a component or a number, for a derivative
 _FARTHEST = 8.0  # standard deviations that readings are off: not where it is linearised
@@ -162,10 +166,20 @@ def fit_body(
 def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _Contacts:
     """The stations of a sweep whose contact is clearly at the tip or clearly before it."""
     seen = component_noise(readings, noise)
-    spread = over_units(seen, readings.beam)
     clamp = ClampInSpace.of(readings)
     force = np.linalg.norm(clamp.force, axis=1)
     loaded = felt(readings, seen)
+    least = least_force(readings, seen) / readings.beam.force_unit
+    end = np.append(np.flatnonzero(loaded), -1)[let_go(force[loaded], least) - 1] + 1
+    if noise is None and len(force) - end >= IDLE:
+        # Of noise that remembers, which hardly jumps, what is read off the body says more.
+        idle = np.abs(readings.values(*COMPONENTS)[end:])
+        shown = np.nanmedian(idle, axis=0) / MEDIAN_OF_NORMAL
+        seen = {
+            name: max(seen[name], float(size)) for name, size in zip(COMPONENTS, shown, strict=True)
+        }
+    spread = over_units(seen, readings.beam)
+    loaded = felt(readings, seen) & (np.arange(len(force)) < end)
     on = np.flatnonzero(loaded & (force > _FAINT * force[loaded].max(initial=0.0)))
     if len(on) and on[-1] < len(readings.table) - 1:  # it slips off
         on = on[: len(on) - int(np.ceil(_BESIDE_SLIP_OFF * len(on)))]
@@ -180,7 +194,7 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     reach, release = found[6:]
     before = reach < 1 - _CLEAR * np.sqrt(variance[0])
     at_tip = release > _CLEAR * np.sqrt(variance[1])
-    kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip)
+    kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip) & (variance[0] < _NEAR**2)
     return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread)
 
 

@@ -137,3 +137,14 @@ def test_jitter_of_the_foot_is_found_and_no_other_noise_is_taken_for_it(seed):
     assert own == pytest.approx(np.full(3, 0.1), rel=0.4)
     for kind in (white, autoregressive(0.9), walk):
         assert foot_jitter(kind(rng, readings.shape), slopes)[0] == 0
+
+
+def test_a_reading_that_depends_on_nothing_fitted_shows_its_noise_alone():
+    """White noise of a moment about the clamp's axis, which is zero, seemed to remember: 0.17."""
+    rng = np.random.default_rng(1)
+    readings = rng.standard_normal((81, 2))
+    by_number = rng.standard_normal((81, 2, 6))
+    by_number[:, 1] = 0.0
+    zeros = np.broadcast_to(np.eye(2), (81, 2, 2))
+    found = estimate(readings, by_number, zeros, np.full(2, 0.3), 1.0, rows=[27, 27, 27])
+    assert found.noise.correlation.max() < 0.05
