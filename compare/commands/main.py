@@ -69,6 +69,7 @@ _LONGEST = 800  # characters of an error
 app = typer.Typer(
     cls=Group,
     add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would swallow the brackets of [beam] and [tolerances]
 )

@@ -63,6 +63,8 @@ def _sweeps(folder: Path) -> tuple[Path, Path]:
         there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
         allowed = "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet"
         remedy = "make one: vibrissa run CASE --out DIR"
+        if there.endswith(".parquet") and "," in there:
+            remedy += "; of other engines' sweeps, vibrissa compare A.parquet B.parquet"
         raise InputError("DIR", f"{folder} ({there[:200]})", allowed, remedy)
     return folder / "analytic.parquet", sweeps[0]
 
