@@ -247,7 +247,8 @@ def simulate_there_and_back(
     """
     from mujoco_models.dynamics.sweep import run_there_and_back
 
-    moved, chosen = motion or Motion(), settings or Settings()
+    moved = require("motion", motion or Motion(), Motion, "as Motion(speed=0.01)")
+    chosen = require("settings", settings or Settings(), Settings, "as Settings(segments=40)")
     on, back = run_there_and_back(leftward(case), moved, chosen, advance, keep_facing(case, keep))
     return facing(case, on), facing(case, back)
 

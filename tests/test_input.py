@@ -21,6 +21,7 @@ from analytic import (
     circle,
     deflected_shapes,
     find_events,
+    find_many_events,
     mesh_section,
     named_case,
     parabola,
@@ -29,7 +30,18 @@ from analytic import (
     solve_contact,
     solve_sweep,
 )
-from analytic.space import reconstruct_space, solve_space
+from analytic.space import (
+    Cloud,
+    convex_band,
+    deflected_rods,
+    fit_body,
+    misses,
+    point_cloud,
+    polyhedron,
+    reconstruct_space,
+    solve_space,
+    sphere,
+)
 from compare import (
     Input,
     Uncertainties,
@@ -43,13 +55,16 @@ from compare import (
 from mujoco_models import (
     OwnModel,
     Settings,
+    from_solref,
     inspect_model,
     simulate_model,
     simulate_motion,
     simulate_sweep,
+    to_solref,
 )
 
 EXACT = solve_sweep(Case())
+BALL = sphere(1.0, centre=(0, 1.4, 0))
 
 
 @pytest.mark.parametrize(
@@ -91,6 +106,21 @@ EXACT = solve_sweep(Case())
         (lambda: certify(Case()), "readings = a Case"),
         (lambda: classify(Case()), "readings = a Case"),
         (lambda: deflected_shapes(Case()), "readings = a Case"),
+        (lambda: polyhedron(np.zeros((2, 3, 4))), "body.points"),
+        (lambda: polyhedron([0.0, 1.0]), "must be points (x, y, z)"),
+        (lambda: fit_body([]), "readings = none"),
+        (lambda: convex_band([]), "readings = none"),
+        (lambda: point_cloud(EXACT), "found = a Readings"),
+        (lambda: point_cloud(EXACT.table), "found = without contacts and normals"),
+        (lambda: misses(BALL, BALL, 1.0), "cloud = a Ellipsoid"),
+        (lambda: misses(Cloud(np.zeros((1, 3)), np.eye(3)[:1]), BALL, -1.0), "length = -1"),
+        (lambda: deflected_rods(EXACT), "readings = a Readings: must be a SpatialReadings"),
+        (lambda: relative_noise(0.01, EXACT), "readings = a float"),
+        (lambda: find_many_events([], [Beam()]), "beams = 1 of 0 profiles"),
+        (lambda: from_solref((0.02, 1), (0.9, 0.95, 1e-3), -1), "inverse_mass = -1"),
+        (lambda: from_solref((0.02, 1), (0.9, 0.95, 1e-3), 1, depth=-1e-3), "depth = -0.001"),
+        (lambda: from_solref((0.02, 1), (0.9,), 1), "solimp = (0.9,)"),
+        (lambda: to_solref("100", 1, 1), "stiffness = 100"),
         (lambda: solve_space(Case()), "case = a Case: must be a SpatialCase"),
         (lambda: reconstruct_space(Case()), "readings = a Case: must be a SpatialReadings"),
         (lambda: separate_lag(1, 2), "left = a int: must be a Offset; as compare("),

@@ -74,7 +74,8 @@ def certify(readings: Readings) -> "pd.DataFrame":
     couple = arm * pushed
 
     free = phase == "free"
-    touching = np.isfinite(arc_length) | (free & heavy & np.isfinite(moment))
+    touching = np.isfinite(arc_length) | (free & heavy)
+    touching &= np.isfinite(force_x + force_y + moment)  # without them a march has no end
     boundary = np.where(free, 0.0, np.nan)
     balance = np.where(free, np.abs(moment), np.nan)
     if touching.any():

@@ -7,7 +7,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import within
+from analytic.problem.numbers import is_finite_number, within
 from analytic.problem.readings import Readings, require_readings
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
@@ -127,12 +127,12 @@ def relative_noise(readings: Readings | Sequence[Readings], level: float) -> dic
     InputError
         If `level` is not between 0 and 1.
     """
-    if isinstance(level, bool | str) or not 0 <= level < 1:
-        remedy = "it is a share of each reading's largest magnitude"
-        raise InputError("noise", level, "between 0 and 1", remedy)
     passes = [*readings] if isinstance(readings, Sequence) else [readings]
     for one in passes:
         require_readings(one)
+    if not (is_finite_number(level) and 0 <= level < 1):
+        remedy = "it is a share of each reading's largest magnitude"
+        raise InputError("noise", level, "between 0 and 1", remedy)
     return {
         name: float(level) * max(largest(one.values(name)) for one in passes)
         for name in CLAMP_READINGS

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import fdtrc, gammaincc
@@ -11,6 +12,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, require_readings
 
+_One = TypeVar("_One")
 _BY_CHANCE = 0.01  # probability of so much scatter, or of so little; less is no chance
 _HARDLY = 1e-3  # the same of passes that leave the same; of few the test is right to a factor of 6
 _FEWEST = 3  # passes; two do not show over how many places noise remembers
@@ -149,11 +151,17 @@ def _by_chance(curves: Floats, most: int) -> float:
     return float(fdtrc(freedom, n * freedom, passes * (mean @ mean) / trace))
 
 
-def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
-    """Sweeps of one rig as a list, whatever their number."""
+def listed(readings: _One | Sequence[_One]) -> list[_One]:
+    """One sweep or several."""
     passes = list(readings) if isinstance(readings, Sequence) else [readings]
     if not passes:
         raise InputError("readings", "none", "one pass or more", "name the files of the passes")
+    return passes
+
+
+def as_passes(readings: "Readings | Sequence[Readings]") -> list[Readings]:
+    """Sweeps of one rig as a list, whatever their number."""
+    passes = listed(readings)
     for one in passes:
         require_readings(one)
         if one.beam != passes[0].beam:

@@ -131,7 +131,7 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
         kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
         tip.
     """
-    beam = readings.beam
+    beam = require_readings(readings).beam
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
     steps = np.hypot(np.diff(x, prepend=x[:, :1]), np.diff(y, prepend=y[:, :1]))
     s = np.minimum(np.cumsum(steps, axis=1), beam.length)

@@ -14,6 +14,7 @@ from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
+from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
@@ -183,6 +184,9 @@ def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list
     InputError
         If one vibrissa cannot reach its contour, is curved at rest or not uniform.
     """
+    if len(profiles) != len(beams):
+        what = f"{len(beams)} of {len(profiles)} profiles"
+        raise InputError("beams", what, "as many as profiles", "give one for each")
     contours = [given_contour(*one) for one in zip(profiles, beams, strict=True)]
     for beam in beams:
         require_plain("the events of many", beam)

@@ -15,7 +15,7 @@ from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
-from analytic.problem.numbers import finite
+from analytic.problem.numbers import finite, whole
 from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
 from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns
@@ -248,7 +248,7 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
         If the states are lost on the way, or not exact.
     """
     _check(case)
-    turn_at = finite("turn_at", turn_at)
+    turn_at, stations = finite("turn_at", turn_at), whole("stations", stations, 2, 100_000)
     if case.sweep.direction == "right":
         return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
     length = case.beam.length

@@ -21,6 +21,7 @@ from mujoco_models.allowed import BeamKind, ObstacleKind
 
 IN_THE_PLANE = (PLANE, MOTION, MODEL)
 ANY_CASE = (*IN_THE_PLANE, SPACE)
+_LEFT_OUT = "left out but for "
 A_RIG = "a file that no engine wrote"
 
 
@@ -34,7 +35,7 @@ class For:
     def lacks(self, kind: str, others: Collection[str]) -> str | None:
         """What would be allowed, if the option would be ignored."""
         if kind not in self.kinds:
-            return f"left out but for {' or '.join(self.kinds)}"
+            return _LEFT_OUT + " or ".join(self.kinds)
         missing = [one for one in self.beside if one not in others]
         return f"beside {missing[0]}" if missing else None
 
@@ -51,7 +52,10 @@ def require_use(context: typer.Context, kind: str, *others: str) -> None:
             is_option, value = parameter.param_type_name == "option", context.params[name]
             called = parameter.opts[0] if is_option else name.upper()
             shown = "given" if isinstance(value, bool) else str(value)
-            raise InputError(called, shown, str(lacks[-1]), f"this is {kind}")
+            allowed = str(lacks[-1])
+            if parameter.required:  # and so cannot be left out
+                allowed = allowed.removeprefix(_LEFT_OUT)
+            raise InputError(called, shown, allowed, f"this is {kind}")
 
 
 def _given(context: typer.Context, parameter: Any) -> bool:  # noqa: ANN401  # typer's own

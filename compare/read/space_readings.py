@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Beam, InputError
+from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours, read_file
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import CONTACT_POINT, SENSED_IN_SPACE
@@ -28,7 +29,7 @@ def is_spatial(path: Path) -> bool:
 
 
 def read_space(
-    path: Path,
+    path: str | Path,
     beam: Beam | None = None,
     tangent: ArrayLike | None = None,
     columns: Sequence[str] = (),
@@ -38,7 +39,7 @@ def read_space(
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         A Parquet or text file with any separator and decimal mark.
     beam : Beam, optional
         The vibrissa, if the file names none; ``Beam()`` if not given.
@@ -60,6 +61,7 @@ def read_space(
         If the file, a column or a unit cannot be used, a cell is no number, columns have units and
         the vibrissa none, or there is no such frame.
     """
+    path = as_path(path, "readings file")
     if is_ours(path) and not columns:
         return SpatialReadings.read(path, beam, tangent)
     table, used, _ = renamed(raw_table(path), columns, path.name, SENSED_IN_SPACE)

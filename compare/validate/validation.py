@@ -208,7 +208,7 @@ def validate(
     require("found", found, Measurement, "as compare(reference, candidate)")
     if simulation not in get_args(Side):
         raise unknown("simulation", simulation, get_args(Side))
-    case.require_sweep("a validation")
+    require("case", case, Case, "as compare.load_case(file).case").require_sweep("a validation")
     reach = sensitivities(case, stated, samples)
     whole_table = found.alignment.table
     table = whole_table.iloc[:: -(-len(whole_table) // _MOST) or 1].reset_index(drop=True)

@@ -13,9 +13,8 @@ from mujoco_models.inspect.measured import Geom
 from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
-from mujoco_models.model.solref import from_solref, impedance_at
+from mujoco_models.model.solref import impedance_at, pushes
 
-_DEFAULT = (0.02, 1.0)
 _NOTHING = 1e-200
 
 
@@ -140,13 +139,11 @@ def _pushes(
 
     As deep as that force presses it, where its impedance changes with the depth.
     """
-    if (solref[0] > 0) != (solref[1] > 0):
-        solref = [*_DEFAULT]  # MuJoCo takes no mixture of its two forms
     safe = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
     inverse, step = weight or 1.0, model.opt.timestep if safe else 0.0
 
     def at(depth: float) -> tuple[float, float]:
-        stiffness, damping = from_solref(solref, solimp, inverse, depth=depth, timestep=step)
+        stiffness, damping = pushes(solref, solimp, inverse, depth, step)
         return max(stiffness, _NOTHING), damping
 
     def too_deep(log_depth: float) -> float:

@@ -1,12 +1,13 @@
 """From a contact's stiffness and damping to MuJoCo's parameters, and back."""
 
-import math
 from collections.abc import Sequence
 
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import floats, positive, within
 
 _LARGEST = 0.9999  # MuJoCo's own limits of an impedance
 _LEAST = 1e-4
+_DEFAULT = 0.02, 1.0  # what it takes for a solref of one number positive, and one not
 _SHORTEST = 1e-15**0.5  # its smallest number is that of a square
 
 
@@ -40,14 +41,9 @@ def to_solref(
     InputError
         If a number is not positive, or the impedance is not from 0.0001 to 0.9999.
     """
-    for name, value in (
-        ("stiffness", stiffness), ("damping", damping), ("inverse_mass", inverse_mass),
-    ):  # fmt: skip
-        if not (value > 0 and math.isfinite(value)):
-            raise InputError(name, value, "a positive finite number", "correct it")
-    if not _LEAST <= impedance <= _LARGEST:
-        raise InputError("impedance", impedance, f"{_LEAST} to {_LARGEST}", "0.9 is MuJoCo's")
-    yielding = (1 - impedance) * inverse_mass
+    stiffness, damping = positive("stiffness", stiffness), positive("damping", damping)
+    impedance = within("impedance", impedance, _LEAST, _LARGEST, "0.9 is MuJoCo's")
+    yielding = (1 - impedance) * positive("inverse_mass", inverse_mass)
     return (-stiffness * yielding, -damping * yielding), (impedance, impedance, 1e-3)
 
 
@@ -63,7 +59,8 @@ def from_solref(
     Parameters
     ----------
     solref : sequence of float
-        Two of them, in either form: (time constant [s], damping ratio), or (-k, -b).
+        Two of them, in either form: (time constant [s], damping ratio), or (-k, -b). Of one that
+        is both MuJoCo takes its default, (0.02, 1).
     solimp : sequence of float
         Impedance at no depth and at `width`, width [m], and, if they are not MuJoCo's 0.5 and 2,
         midpoint and power.
@@ -81,8 +78,33 @@ def from_solref(
         Force over depth at rest [N/m].
     damping : float
         Force over speed of approach [N s/m].
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, the inverse mass not positive, or depth or time step negative.
     """
-    first, second = solref[:2]
+    impedances = floats("solimp", solimp, (None,), "numbers").tolist()
+    if not 2 <= len(impedances) <= 5:
+        raise InputError("solimp", solimp, "two to five numbers", "as (0.9, 0.95, 0.001)")
+    return pushes(
+        floats("solref", solref, (2,), "two numbers, as (0.02, 1)").tolist(),
+        impedances,
+        positive("inverse_mass", inverse_mass),
+        within("depth", depth, 0.0, remedy="it is positive inside the object"),
+        within("timestep", timestep, 0.0),
+    )
+
+
+def pushes(
+    solref: Sequence[float],
+    solimp: Sequence[float],
+    inverse_mass: float,
+    depth: float,
+    timestep: float,
+) -> tuple[float, float]:
+    """Of any numbers that a compiled model may hold, as `from_solref` has it."""
+    first, second = solref if (solref[0] > 0) == (solref[1] > 0) else _DEFAULT
     d = impedance_at(solimp, depth)
     largest = min(max(solimp[1], _LEAST), _LARGEST)
     if first > 0:

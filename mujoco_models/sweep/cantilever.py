@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.numbers import finite
 from analytic.problem.support import Support
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.vibrissa import Vibrissa
@@ -26,7 +27,7 @@ def load_tip(
     The load is MuJoCo's own, an actuator on a site; Newton's method on MuJoCo's balance finds the
     rest.
     """
-    vibrissa = vibrissa or Beam()
+    load, vibrissa = finite("load", load), vibrissa or Beam()
     beam = build(settings, 1.0, Vibrissa.of(vibrissa, Support(clamp_stiffness)))
     layout = beam.layout
     spec = beam.spec(Beam().radius)

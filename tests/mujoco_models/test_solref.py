@@ -54,6 +54,7 @@ def test_depth_is_force_over_stiffness(impedance, force):
         pytest.param((0.01, 0.7), (0.8, 0.99, 0.002, 0.3, 3), marks=pytest.mark.slow),
         pytest.param((0.01, 1.0), (0.9, 0.99, 0.002, 0.5, 1), marks=pytest.mark.slow),
         ((-2e3, -50.0), (0.7, 0.9, 0.001)),
+        ((0.01, -1.0), (0.9, 0.95, 0.001)),  # of a mixture MuJoCo takes its default
     ],
 )
 def test_the_stiffness_of_any_parameters_is_what_is_stepped(solref, solimp):

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 from analytic.problem.arrays import Floats
+from analytic.problem.errors import require
 from analytic.space.problem.readings import (
     CONTACT_POINT,
     FOOT,
@@ -80,7 +81,7 @@ def rod_residuals(readings: SpatialReadings) -> Floats:
         friction recorded and, in Phase A, of what the tip points away from the body. Zero where the
         vibrissa is free, NaN where there are no readings.
     """
-    beam = readings.beam
+    beam = require("readings", readings, SpatialReadings, "as solve_space gives them").beam
     missed = np.where(readings.trusted, 0.0, np.nan)
     foot, contact = readings.values(*FOOT), readings.values(*CONTACT_POINT)
     normal = pushes = readings.values(*NORMAL)
@@ -126,6 +127,7 @@ def deflected_rods(readings: SpatialReadings) -> Floats:
     array, shape (stations, 34, 3)
         From clamp to tip [length]; NaN where there are no readings, or none of a contact.
     """
+    require("readings", readings, SpatialReadings, "as solve_space gives them")
     beam, tangent = readings.beam, readings.clamp_tangent
     foot = readings.values(*FOOT)
     force = readings.values(*FORCE) / beam.force_unit

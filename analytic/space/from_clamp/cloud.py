@@ -7,11 +7,13 @@ import numpy as np
 import pandas as pd
 
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.files import SOFTWARE, as_path, write_whole
+from analytic.problem.numbers import positive
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.readings import CONTACT_POINT, NORMAL
 
+_AS_FOUND = "as reconstruct_space gives it"
 _FARTHEST = 100.0  # of the length
 _APART = 0.25  # of the length: how far off the surface its nearest point is asked for
 
@@ -52,7 +54,11 @@ def point_cloud(*found: pd.DataFrame) -> Cloud:
     InputError
         If no station touches.
     """
-    table = pd.concat([f[[*CONTACT_POINT, *NORMAL]] for f in found]).dropna().to_numpy(dtype=float)
+    parts = [require("found", one, pd.DataFrame, _AS_FOUND) for one in found]
+    if not all({*CONTACT_POINT, *NORMAL} <= {*one} for one in parts):
+        raise InputError("found", "without contacts and normals", "of a sweep in space", _AS_FOUND)
+    rows = [one[[*CONTACT_POINT, *NORMAL]].dropna().to_numpy(dtype=float) for one in parts]
+    table = np.concatenate([np.empty((0, 6)), *rows])
     if not len(table):
         raise InputError("readings", "without a contact", "with one at a station", "check them")
     return Cloud(table[:, :3], table[:, 3:])
@@ -80,6 +86,7 @@ def write_ply(cloud: Cloud, path: str | Path) -> Path:
     OSError
         If the file cannot be written.
     """
+    require("cloud", cloud, Cloud, "as point_cloud(reconstruct_space(readings))")
     path = as_path(path, "point cloud")
     if path.suffix.lower() != ".ply":
         raise InputError("point cloud", path, "named *.ply", "rename it")
@@ -114,6 +121,9 @@ def misses(cloud: Cloud, body: Body, length: float) -> Misses:
     Misses
         Distances and angles.
     """
+    require("cloud", cloud, Cloud, "as point_cloud(reconstruct_space(readings))")
+    require("body", body, Body, "as sphere(1.0, centre=(0, 1.4, 0))")
+    length = positive("length", length)
     distances, angles = [], []
     for point, normal in zip(cloud.points, cloud.normals, strict=True):
         apart = _APART * length

@@ -8,6 +8,7 @@ import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_bent_right
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering, scatter
+from analytic.from_clamp.passes import listed
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, require
@@ -145,7 +146,7 @@ def of_one_vibrissa(
     readings: SpatialReadings | Sequence[SpatialReadings],
 ) -> Sequence[SpatialReadings]:
     """One sweep or several past a body, for who needs a straight and uniform vibrissa."""
-    sweeps = readings if isinstance(readings, Sequence) else [readings]
+    sweeps = listed(readings)
     for one in sweeps:
         require("readings", one, SpatialReadings, _AS_READ)
         require_plain("the fit of a body", one.beam)

@@ -67,10 +67,9 @@ class SpatialCase(Shown):
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
         require_plain("a sweep in space", self.beam)
-        if self.friction != 0:  # less is lost in rounding
-            within(
-                "friction", self.friction, _LEAST_FRICTION, 1.0, "0 is none, 0.1 to 0.5 is usual"
-            )
+        usual = "0 is none, 0.1 to 0.5 is usual"
+        if within("friction", self.friction, 0.0, 1.0, usual):  # less is lost in rounding
+            within("friction", self.friction, _LEAST_FRICTION, 1.0, usual)
         if self.friction and not self.body.smooth and self.beam.radius == 0:
             allowed = f"0 for a vibrissa without a radius past edges ({self.body.label})"
             raise InputError("friction", self.friction, allowed, "give the vibrissa a radius")

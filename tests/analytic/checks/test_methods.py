@@ -75,3 +75,13 @@ def test_a_broken_solver_cannot_hide(case, monkeypatch):
     table = solve_sweep(case, certified=True).table
     touching = table["phase"] != "free"
     assert (table.loc[touching, "status"] == "diverged").all()
+
+
+def test_a_station_without_a_reading_is_not_certified(exact):
+    """Its march has no end, and kept the others from coming to theirs."""
+    at = int(np.flatnonzero(exact.table["phase"] != "free")[3])
+    table = exact.table.copy()
+    table.loc[at, "force_x"] = np.nan
+    residuals = certify(Readings(table, exact.beam))
+    assert residuals.loc[at].isna().all()
+    assert residuals["residual_boundary"].drop(index=at).max() < 2e-12

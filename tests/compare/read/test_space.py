@@ -129,7 +129,7 @@ def test_a_foreign_file_has_columns_units_and_a_frame_of_its_own(load, tmp_path)
     assert found.agrees
     assert max(one.max for one in found.disagreement.values()) < 1e-12
     exact.write(tmp_path / "ours.parquet")  # knows that it is in the world's frame
-    ours = read_space(tmp_path / "ours.parquet", frame="clamp")
+    ours = read_space(str(tmp_path / "ours.parquet"), frame="clamp")
     assert compare(exact, ours).disagreement["moment_y"].max == 0
     with pytest.raises(InputError, match="beside a vibrissa with units"):
         read_space(tmp_path / "other.csv", None, None, columns)

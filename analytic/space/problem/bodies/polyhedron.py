@@ -11,7 +11,7 @@ from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import hull_of, read_body
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import Vector, positive, vector, within
+from analytic.problem.numbers import Vector, floats, positive, vector, within
 from analytic.space.problem.bodies.body import Body, Feature, Spot, flat_spot
 
 _ON_PLANE = 1e-9  # of the extent: so near to a plane a point is on it
@@ -277,8 +277,8 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
     from scipy.spatial import QhullError  # slow to load, and few cases need it
 
     try:
-        found, _ = hull_of(np.asarray(points, dtype=float))
-    except (QhullError, ValueError) as error:
+        found, _ = hull_of(floats("body.points", points, (None, 3), "points (x, y, z)"))
+    except QhullError as error:
         what = f"not usable ({error!s:.80})"
         allowed, remedy = "four points or more with a volume", "an array of shape (n, 3)"
         raise InputError("body.points", what, allowed, remedy) from error
