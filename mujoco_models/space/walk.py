@@ -21,6 +21,7 @@ from mujoco_models.space.surface import Surface, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
+_ALONG = 1e-7  # L: as near as the nearest link; MuJoCo's vertices are in single precision
 _SMALLEST = 1e-5  # L; an equilibrium that steps as small as this do not find has ended
 _EVENT = 5e-4  # L, to which a change of phase is enclosed
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
@@ -38,6 +39,7 @@ _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an 
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
+_INDIFFERENT = 1e-12  # of the softest eigenvalue, a hundred times what rounding leaves of zero
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
 
@@ -107,7 +109,12 @@ class Walk:
         model, at = self._model, min(touch + _BEGIN, float(self._marks[-1]))
         foot = self._foot(at)
         model.place(foot, model.straight)
-        _, link, s = model.nearest_link()
+        nearest, link, s = model.nearest_link()
+        for lower in range(link - 1):  # along a face the vibrissa bends at its first edge
+            distance, at_s = model.distance_of_link(lower)
+            if distance < nearest + _ALONG:
+                link, s = lower, at_s
+                break
         start = State(model.straight, link, s, 0.0, False)
         surface = surface_at(model, model.touch(link, s))
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
@@ -219,6 +226,8 @@ class Walk:
         if not (clear and loose):
             hopped = over_faces(self._rest, held, self._foot(goal), _LANDING)
             landed = hopped or self._descended(held, goal)
+            if landed and landed.state.force > _LOOSE and not self._is_held(landed, goal):
+                hopped = landed = None
         self._held = None
         if landed is None or (loose and not landed.stable):
             self.events.append(WalkEvent("release" if loose else "slip-off", self._at))
@@ -232,6 +241,10 @@ class Walk:
                 self._note_phase(held, goal, landed)
             self._held = landed
         self._at = goal
+
+    def _is_held(self, landed: Settled, goal: float) -> bool:
+        """Whether a face across the clamp's tangent does not let the vibrissa turn about that."""
+        return self._rest.softest(landed, self._foot(goal))[0] > _INDIFFERENT
 
     def _descended(self, held: Settled, goal: float) -> Settled | None:
         """Where the vibrissa goes down to.

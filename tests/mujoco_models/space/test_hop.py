@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from mujoco_models import SpatialSettings
+from analytic.space import FootPath, SpatialCase, polyhedron, solve_space
+from compare import assert_agreement
+from mujoco_models import SpatialSettings, simulate_space
 from mujoco_models.space import walk as walks
 from mujoco_models.space.descent import descend
 from mujoco_models.space.rest import Rest
@@ -78,3 +80,11 @@ def test_a_side_that_comes_over_a_corner_goes_where_the_way_down_leads(
         walk.go_to(float(travel) / case.beam.length)
     assert len(seen) >= 5
     assert max(seen) < 1e-6  # Newton's method ends both
+
+
+def test_an_upright_vibrissa_meets_a_box_along_a_face_and_leaves_it_at_the_edge():
+    """Beyond the edge its tip would be on a face that lets it turn about its clamp's tangent."""
+    corners = [(x, y, z) for x in (-0.5, 0.5) for y in (0.5, 2.5) for z in (-0.5, 0.5)]
+    way = FootPath([[1.5, 0.13], [-1.5, 0.02]], stations=20)
+    case = SpatialCase(body=polyhedron(corners), path=way)
+    assert_agreement(solve_space(case), simulate_space(case, SpatialSettings(segments=20)))
