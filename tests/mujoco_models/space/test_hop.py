@@ -86,5 +86,5 @@ def test_an_upright_vibrissa_meets_a_box_along_a_face_and_leaves_it_at_the_edge(
     """Beyond the edge its tip would be on a face that lets it turn about its clamp's tangent."""
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (0.5, 2.5) for z in (-0.5, 0.5)]
     way = FootPath([[1.5, 0.13], [-1.5, 0.02]], stations=20)
-    case = SpatialCase(body=polyhedron(corners), path=way)
-    assert_agreement(solve_space(case), simulate_space(case, SpatialSettings(segments=20)))
+    case = SpatialCase(body=polyhedron(np.array(corners)), path=way)
+    assert_agreement(solve_space(case), simulate_space(case, SpatialSettings()))
