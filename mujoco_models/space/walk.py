@@ -39,7 +39,7 @@ _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an 
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
-_INDIFFERENT = 1e-12  # of the softest eigenvalue, a hundred times what rounding leaves of zero
+_INDIFFERENT = 1e-8  # of the softest eigenvalue: of zero rounding leaves up to 1e-10
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
 
