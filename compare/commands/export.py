@@ -51,7 +51,7 @@ def export(
         bool, flag("--urdf", "Write URDF, as for *.urdf: a chain without springs.")
     ] = False,
 ) -> bool:  # fmt: skip
-    """Write a model to paste into a robot, chosen for a wanted error.
+    """Write a model for a robot, chosen for a wanted error.
 
     Segments, time step and contacts are the coarsest with which what is written, swept past the
     case's object by MuJoCo alone, is so near to rest. In the units of the case, SI if it has units.

@@ -69,7 +69,7 @@ def inspect(
     ] = None,
     out: Annotated[Path | None, out_folder("none; with --float32 results/CASE-float32")] = None,
 ) -> bool:
-    """Measure what beam a MuJoCo model is, what is wrong, and what to set.
+    """Measure what beam a MuJoCo model is and what is wrong.
 
     With --write: a copy of its file with just these settings, and the case that it is a model of.
 

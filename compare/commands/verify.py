@@ -14,7 +14,7 @@ def verify(
     ] = False,
     out: Annotated[Path | None, out_folder("results/verify")] = None,
 ) -> bool:
-    """Hold what is computed here against what others printed, measured or derived.
+    """Hold our numbers against those that others printed.
 
     The exit code is 1 if any number differs by more than its stated reason makes.
     """
