@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path, regular_file
 
 _START = 4  # cells along an edge of the cube
@@ -110,6 +110,7 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> MeshBody:
     from scipy.spatial import QhullError  # slow to load, as trimesh is
 
     file = as_path(file, "mesh file")
+    require("mesh hull", hull, bool, "True takes the hull of an open or dented mesh")
     read = _load(file)
     size = read.size
     if not hull:

@@ -70,6 +70,7 @@ def test_hull_on_request(tmp_path):
     open_box.export(tmp_path / "open.stl")
     assert "hull = true" in refusal(mesh_section, tmp_path / "open.stl")
     assert_square(mesh_section(tmp_path / "open.stl", hull=True), 0.5)
+    assert "mesh hull" in refusal(mesh_section, tmp_path / "open.stl", hull="no")
 
 
 def test_simplified_within_a_tolerance(tmp_path):
