@@ -90,7 +90,7 @@ def likeliest(
             best = f", the best leaves {least:.3g} times the noise"
             if least < _AS_NOISE:
                 best = ", what the best leaves is too much alike along the sweep for noise"
-        why = f"likely {otherwise}"
+        why = f"likely {otherwise}; of a simulator's readings, state its error as noise"
         if refused:
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
         raise NoFamilyError("family", f"none of them{best}", "one that explains the readings", why)
