@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp, softmax
+from scipy.special import log_softmax, logsumexp, softmax
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 
@@ -21,6 +21,7 @@ _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZE
 _WHITE = 5.0  # times as likely beforehand as all that remembers
 _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
 _PRIOR = _LONG / _LONG.sum() / _WHITE
+_LOG_PRIOR = np.log(np.concatenate([[[1.0]], _PRIOR]))
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _STATED_TO = 0.2  # relative, of a stated noise's variance: the noise is known to a tenth
 _DRAWS = 400  # of the noise, over which the estimate is averaged
@@ -80,7 +81,9 @@ class Estimated:
     covariance: Floats  # shape (k, k)
     noise: NoiseFound
     by_pass: tuple[tuple[Floats, Floats], ...]  # numbers and covariance of each pass alone
-    likelihood: float  # logarithm of the readings' probability over their noise, but for a constant
+    # Shape (noises, channels); logarithm of the readings' probability, but for a constant, were the
+    # noise so.
+    by_noise: Floats
     stations: int  # of which that is, neighbours counting as one where there are many
     relief: float  # by which all that is fitted lessens the sum of squares, were the noise white
     of_hum: float  # by which hum does, which is not among that
@@ -175,7 +178,7 @@ def estimate(
         *scaled(together),
         _described(likely, hum, block, block * max(rows)),
         tuple(scaled(one) for one in by_pass),
-        float(logsumexp(weights, axis=0).sum()),
+        weights - _LOG_PRIOR,
         len(columns),
         given - float(np.sum(readings**2)) + unfitted,
         float(of_hum),
@@ -281,9 +284,16 @@ def _alone(
 def _likely(left: Floats, determinants: Floats, freedom: Integers | int) -> tuple[Floats, Floats]:
     """Sums of squares, and logarithms of each noise's likelihood, each shape (grid, channels)."""
     square = np.maximum(left, freedom * _NOISELESS**2)
-    logarithms = -(freedom * np.log(square) + determinants) / 2
-    logarithms[1:] += np.log(_PRIOR)
-    return square, logarithms
+    return square, _LOG_PRIOR - (freedom * np.log(square) + determinants) / 2
+
+
+def likelihood(by_noise: Floats, seen: Floats | None = None) -> float:
+    """Logarithm of readings' probability over what their noise may be, but for a constant.
+
+    By what another fit has `seen` of that noise, its own `by_noise`, if that is given.
+    """
+    prior = _LOG_PRIOR if seen is None else log_softmax(seen + _LOG_PRIOR, axis=0)
+    return float(logsumexp(by_noise + prior, axis=0).sum())
 
 
 def _hum(left: Floats) -> float:

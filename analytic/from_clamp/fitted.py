@@ -5,10 +5,12 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from analytic.from_clamp.calibration.calibrate import Estimate
-from analytic.from_clamp.correlated import NoiseFound
+from analytic.from_clamp.correlated import NoiseFound, likelihood
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError, unknown
 from analytic.problem.shown import Shown
 
+_DECISIVE = 10.0  # of Schwarz's criterion (Kass and Raftery 1995)
 _AS_NOISE = 1.2  # times the noise; less does not show a wrong object
 
 Kind = TypeVar("Kind", bound="Fitted")
@@ -28,24 +30,33 @@ class Fitted(Shown):
         Root mean square of what the fit leaves, over the noise.
     explains : bool
         Whether noise alone explains that.
-    bic : float
-        Schwarz's criterion: the least of several families is the likeliest.
+    by_noise : array, shape (noises, channels)
+        Logarithm of the readings' probability for each noise that they may have.
+    penalty : float
+        Of Schwarz's criterion, for the parameters.
     stations : int
         How many the fit is from.
     noise : NoiseFound
         What of the noise remembers.
     rivals : dict
-        `bic` and `explains` of each family that was tried.
+        Of each family that was tried Schwarz's criterion, for the noise that the likeliest shows,
+        and whether it explains the readings; no family does that is worse by more than 10.
     """
 
     family: str
     found: dict[str, Estimate]
     misfit: float
     explains: bool
-    bic: float
+    by_noise: Floats
+    penalty: float
     stations: int
     noise: NoiseFound
     rivals: dict[str, tuple[float, bool]] = field(default_factory=dict)
+
+    @property
+    def bic(self) -> float:
+        """Schwarz's criterion: the least of several families is the likeliest."""
+        return self.penalty - 2 * likelihood(self.by_noise)
 
     def _tiles(self) -> dict[str, object]:
         return {
@@ -82,17 +93,32 @@ def likeliest(
             if family != "auto":
                 raise
             refused.append(str(error))
-    explaining = [one for one in found if one.explains]
+    likely = _criteria(found)
+    least = min(likely.values(), default=0.0)
+    good = {one.family: one.explains and likely[one.family] < least + _DECISIVE for one in found}
+    explaining = [one for one in found if good[one.family]]
     if family == "auto" and not explaining:
         best = ""
         if found:
-            least = min(one.misfit for one in found)
-            best = f", the best leaves {least:.3g} times the noise"
-            if least < _AS_NOISE:
+            left = min(one.misfit for one in found)
+            best = f", the best leaves {left:.3g} times the noise"
+            if left < _AS_NOISE:
                 best = ", what the best leaves is too much alike along the sweep for noise"
         why = f"likely {otherwise}; of a simulator's readings, state its error as noise"
         if refused:
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
         raise NoFamilyError("family", f"none of them{best}", "one that explains the readings", why)
-    rivals = {one.family: (one.bic, one.explains) for one in found}
-    return replace(min(explaining or found, key=lambda one: one.bic), rivals=rivals)
+    rivals = {name: (bic, good[name]) for name, bic in likely.items()}
+    return replace(min(explaining or found, key=lambda one: likely[one.family]), rivals=rivals)
+
+
+def _criteria(found: Sequence[Fitted]) -> dict[str, float]:
+    """Schwarz's criterion of each, for the noise that one of them shows.
+
+    That is the likeliest one if the noise is white: what a wrong object leaves looks like noise
+    that remembers, by which it would be excused.
+    """
+    if not found:
+        return {}
+    seen = min(found, key=lambda one: one.penalty - 2 * one.by_noise[0].sum()).by_noise
+    return {one.family: one.penalty - 2 * likelihood(one.by_noise, seen) for one in found}

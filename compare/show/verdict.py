@@ -206,15 +206,16 @@ def _dominant(found: Validation, beam: Beam) -> str:
     if found.resolved:
         return f"{said}."
     if found.shrink is None:
-        return (
-            f"{said}; even without it the rest hides the disagreement. All uncertainties together "
-            f"would have to shrink to {found.shrink_all:.2g} of what they are."
-        )
-    if name not in found.standard:
-        return f"{said}: it must shrink to {found.shrink:.2g} of what it is to decide."
-    now = found.standard[name]
-    sizes = (standard_of(name, x, beam) for x in (now, found.shrink * now))
-    return f"{said}: its standard uncertainty must shrink from {' to '.join(sizes)} to decide."
+        without = f"{said}; its error, or what else is uncertain, may make all of E"
+        if found.shrink_all is None:
+            return f"{without}."
+        return f"{without}; with {found.shrink_all:.2g} of all uncertainties it would be resolved."
+    sizes = f"{found.shrink:.2g} of that"
+    if name in found.standard:
+        now = found.standard[name]
+        before, after = (standard_of(name, x, beam) for x in (now, found.shrink * now))
+        sizes = f"a standard uncertainty of {after} instead of {before}"
+    return f"{said}; with {sizes} E would be resolved, whatever its error is."
 
 
 def validation_tables(found: Validation, beam: Beam) -> Iterator[Table | Text]:

@@ -75,8 +75,11 @@ class Validation:
     dominant : str
         The input, or ``"noise"`` or ``"numerics"``, that makes most of u_val.
     shrink : float or None
-        By what its uncertainty has to be multiplied for the disagreement to be resolved; 1 if it is
-        resolved already, None if what else is uncertain hides it still.
+        By what its uncertainty has to be multiplied for the disagreement to be resolved, whatever
+        its error is; 1 if it is resolved already, None if that error, or what else is uncertain,
+        may make all of it.
+    shrink_all : float or None
+        The same for all uncertainties together.
     standard : dict
         Standard uncertainty of each input, in the unit of the case.
     noise : dict
@@ -107,6 +110,7 @@ class Validation:
     by_reading: dict[str, Difference]
     dominant: str
     shrink: float | None
+    shrink_all: float | None
     standard: dict[str, float]
     noise: dict[str, float]
     noise_source: str
@@ -132,11 +136,6 @@ class Validation:
         """Whether the dominant part alone makes more than half of u_val squared."""
         return self.whole.shares[self.dominant] > _DOMINATES
 
-    @property
-    def shrink_all(self) -> float:
-        """By what all uncertainties together have to be multiplied for it to be resolved."""
-        return min(1.0, self.whole.error / self.whole.limit) if self.whole.limit > 0 else 1.0
-
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds; the table has a file of its own.
 
@@ -152,7 +151,6 @@ class Validation:
             "by_reading": {name: one.to_dict() for name, one in self.by_reading.items()},
             "resolved": self.resolved,
             "dominates": self.dominates,
-            "shrink_all": self.shrink_all,
         }
 
 
@@ -250,7 +248,8 @@ def validate(
             for i, name in enumerate(CLAMP_READINGS)
         },
         dominant,
-        spread.shrink(whole.error, dominant),
+        spread.shrink(error.ravel(), [dominant]),
+        spread.shrink(error.ravel(), whole.shares),
         {name: one.standard for name, one in stated.inputs.items()},
         dict(zip(CLAMP_READINGS, level.tolist(), strict=True)),
         noise_source,

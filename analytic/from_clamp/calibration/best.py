@@ -80,6 +80,12 @@ def fitted_to_noise(
     return fit, numbers, float(np.sqrt(max(cost - relief, 0.0) / fit.freedom)), known
 
 
+def as_likely_by(spread: Floats, fit: LeastSquaresFit, numbers: Floats) -> Floats:
+    """`Estimated.by_noise` of a fit that is found, over another noise and jitter."""
+    over = fit.of(replace(fit.measured, spread=spread))
+    return _knowing_the_noise(over, numbers, 0.0)[1].by_noise
+
+
 def explained_by_noise(misfit: float, freedom: int, vague: float = 0.0) -> bool:
     """Whether what is left is no more than chance and the noise, known to a tenth, make of it.
 
@@ -205,6 +211,6 @@ def _knowing_the_noise(
     alike = alike_by_chance(left, explained, straight, measured.foot_x, measured.rows)
     # Of fits that find jitter and such that do not, the noise is not the same.
     whitened = found.stations * float(np.linalg.slogdet(fit.whitening)[1].mean())
-    likelihood = found.likelihood + whitened
-    found = replace(found, by_pass=by_pass, alike=alike, likelihood=likelihood)
+    by_noise = found.by_noise + whitened / len(CLAMP_READINGS)
+    found = replace(found, by_pass=by_pass, alike=alike, by_noise=by_noise)
     return numbers, found, relieved[0]

@@ -1,12 +1,16 @@
 """The object as a whole: the contour of a family that explains the clamp's readings best."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.from_clamp.calibration.best import explained_by_noise, fitted_to_noise
+from analytic.from_clamp.calibration.best import (
+    as_likely_by,
+    explained_by_noise,
+    fitted_to_noise,
+)
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
@@ -143,7 +147,14 @@ def families_fitted(
             tried[name] = fitted_to_noise(fit, noise is not None)
         return tried[name]
 
-    return lambda name: _object(known[name], *fitted(name), angles)
+    def found(name: str) -> FittedObject:
+        fit, numbers, misfit, seen = fitted(name)
+        given = _measured(passes, noise, 0)[0].spread
+        if given[0] < fit.measured.spread[0]:  # a foot that jitters would excuse a wrong object
+            seen = replace(seen, by_noise=as_likely_by(given, fit, numbers))
+        return _object(known[name], fit, numbers, misfit, seen, angles)
+
+    return found
 
 
 def _contacts(passes: Sequence[Readings]) -> tuple[Floats, Floats, Floats]:
@@ -225,7 +236,8 @@ def _object(
         misfit=misfit,
         explains=explained_by_noise(misfit, fit.freedom, fit.measured.vague)
         and left_by_noise(known.noise, alike, misfit),
-        bic=-2 * known.likelihood + len(kinds) * float(np.log(data)),
+        by_noise=known.by_noise,
+        penalty=len(kinds) * float(np.log(data)),
         stations=stations,
         noise=known.noise,
         passes=alike,

@@ -255,7 +255,8 @@ def _fitted(
         misfit=misfit,
         explains=explained_by_noise(misfit, left.size - len(numbers))
         and left_by_noise(known.noise, None, misfit),
-        bic=-2 * known.likelihood + len(numbers) * float(np.log(left.size)),
+        by_noise=known.by_noise,
+        penalty=len(numbers) * float(np.log(left.size)),
         stations=len(measured),
         noise=known.noise,
     )

@@ -58,7 +58,7 @@ def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
         said = "the disagreement is resolved" if resolved else "the disagreement is not resolved"
         assert said in done.stdout
         assert "flexural_rigidity dominates" in done.stdout
-        assert ("must shrink from 6e-08 N m^2 to" in done.stdout) == (not resolved)
+        assert ("may make all of E" in done.stdout) == (not resolved)
         folder = tmp_path / "results" / "case-rig"
         found = json.loads((folder / "comparison.json").read_text(encoding="utf-8"))["validation"]
         assert found["resolved"] == found["whole"]["resolved"] == resolved

@@ -65,17 +65,38 @@ def test_shares_are_those_of_the_variance():
     assert shares[NOISE] == pytest.approx(300 * 0.25 / np.sum(variance))
 
 
-def test_what_shrinks_so_far_lets_the_error_stand_out():
+def test_what_shrinks_so_far_lets_the_rest_of_an_error_stand_out():
     given = spread([1.0, 0.1], 0.05)
-    factor = given.shrink(1.0, "input 0")
+    other = np.random.default_rng(3).standard_normal(300)
+    error = 0.5 * other + 0.5 * given.modes[0]
+    factor, stays = given.shrink(error, ["input 0"]), given.stays(error, ["input 0"])
+    assert stays == pytest.approx(0.5, rel=0.1)
     u_val, expand = given.limits({"input 0": factor})
     assert 0 < factor < 1
-    assert expand * u_val == pytest.approx(1.0, rel=1e-9)
-    assert given.shrink(0.1, "input 0") is None
-    assert given.shrink(10.0, "input 0") == 1.0
+    assert 0.8 * stays < expand * u_val < 0.9 * stays
+    assert given.shrink(0.5 * given.modes[0], ["input 0"]) is None
+    assert given.shrink(0.1 * other, ["input 0"]) is None
+    assert given.shrink(10.0 * other, ["input 0"]) == 1.0
+
+
+def test_less_noise_is_less_of_an_error():
+    """A sine of 0.5 in noise of 1 and an input of 1: all at the stated part of themselves."""
+    given, rng = spread([1.0], 1.0), np.random.default_rng(5)
+    sine = 0.5 * np.sqrt(2) * np.sin(np.arange(300) / 30)
+    every, came_true = given.shares(), []
+    for _ in range(200):
+        noise = rng.standard_normal(300)
+        factor = given.shrink(sine + noise, every)
+        if factor is not None:
+            u_val, expand = given.limits(dict.fromkeys(every, factor))
+            left = sine + factor * rng.standard_normal(300)
+            came_true.append(np.sqrt(np.mean(left**2)) > expand * u_val)
+        assert given.shrink(noise, every) is None or given.shrink(noise, every) < 0.3
+    assert len(came_true) > 150
+    assert np.mean(came_true) > 0.95
 
 
 def test_without_any_uncertainty_all_is_resolved():
     nothing = Spread((), np.zeros((0, 5)), np.zeros((0, 0)), np.zeros(5), np.ones(5))
     assert nothing.limits()[0] == 0.0
-    assert nothing.shrink(1e-12, NOISE) == 1.0
+    assert nothing.shrink(np.full(5, 1e-12), [NOISE]) == 1.0
