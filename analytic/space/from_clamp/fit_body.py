@@ -171,10 +171,11 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     loaded = felt(readings, seen)
     least = least_force(readings, seen) / readings.beam.force_unit
     end = np.append(np.flatnonzero(loaded), -1)[let_go(force[loaded], least) - 1] + 1
-    if noise is None and len(force) - end >= IDLE:
+    idle = np.abs(readings.values(*COMPONENTS)[end:])
+    idle = idle[np.isfinite(idle).all(axis=1)]
+    if noise is None and len(idle) >= IDLE:
         # Of noise that remembers, which hardly jumps, what is read off the body says more.
-        idle = np.abs(readings.values(*COMPONENTS)[end:])
-        shown = np.nanmedian(idle, axis=0) / MEDIAN_OF_NORMAL
+        shown = np.median(idle, axis=0) / MEDIAN_OF_NORMAL
         seen = {
             name: max(seen[name], float(size)) for name, size in zip(COMPONENTS, shown, strict=True)
         }
