@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from analytic.numerics.walk import WalkEvent, first_clear, first_touch, first_unlike
 from analytic.problem.arrays import Floats
@@ -22,6 +23,7 @@ from mujoco_models.space.surface import Surface, surface_at
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
 _ALONG = 1e-7  # L: as near as the nearest link; MuJoCo's vertices are in single precision
+_EDGE = 1e-6  # L, to which it is known where a vibrissa along a face begins to
 _SMALLEST = 1e-5  # L; an equilibrium that steps as small as this do not find has ended
 _EVENT = 5e-4  # L, to which a change of phase is enclosed
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
@@ -110,16 +112,32 @@ class Walk:
         foot = self._foot(at)
         model.place(foot, model.straight)
         nearest, link, s = model.nearest_link()
-        for lower in range(link - 1):  # along a face the vibrissa bends at its first edge
-            distance, at_s = model.distance_of_link(lower)
-            if distance < nearest + _ALONG:
-                link, s = lower, at_s
-                break
+        lower = self._lowest(nearest + _ALONG, s)
+        if lower[0] < link - 1:  # along a face the vibrissa bends at its first edge
+            link, s = lower
         start = State(model.straight, link, s, 0.0, False)
         surface = surface_at(model, model.touch(link, s))
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
         if self._held is None:
             self._lost = "unsettled"
+
+    def _lowest(self, near: float, s: float) -> tuple[int, float]:
+        """Where the straight vibrissa, from the clamp on, first is so near to the body.
+
+        Along a line the distance of a convex body falls to its least, and then rises.
+        """
+        model = self._model
+
+        def link_at(s: float) -> int:
+            return min(int(np.searchsorted(model.ends, s)), len(model.ends) - 1)
+
+        def off(s: float) -> float:
+            return model.touch(link_at(s), s).distance - near
+
+        first = float(model.layout.joints[0])
+        if off(first) > 0 > off(s):
+            s = float(brentq(off, first, s, xtol=_EDGE))
+        return link_at(s), s
 
     def _follow(self, target: float) -> None:
         """Along the stable branch to the station, or to its end and what comes after it."""

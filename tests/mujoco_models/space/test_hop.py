@@ -82,7 +82,7 @@ def test_a_side_that_comes_over_a_corner_goes_where_the_way_down_leads(
     assert max(seen) < 1e-6  # Newton's method ends both
 
 
-@pytest.mark.parametrize("segments", [40, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("segments", [40, pytest.param(80, marks=pytest.mark.slow)])
 def test_an_upright_vibrissa_meets_a_box_along_a_face_and_leaves_it_at_the_edge(segments):
     """Beyond the edge its tip would be on a face that lets it turn about its clamp's tangent."""
     corners = [(x, y, z) for x in (-0.5, 0.5) for y in (0.5, 2.5) for z in (-0.5, 0.5)]
