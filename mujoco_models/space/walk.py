@@ -23,6 +23,7 @@ from mujoco_models.space.surface import Surface, surface_at
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
 _ALONG = 1e-7  # L: as near as the nearest link; MuJoCo's vertices are in single precision
+_FLAT = 5e-3  # L; past a body of a radius of curvature of 100 L it is as near over 4.5e-3 L
 _EDGE = 1e-6  # L, to which it is known where a vibrissa along a face begins to
 _SMALLEST = 1e-5  # L; an equilibrium that steps as small as this do not find has ended
 _EVENT = 5e-4  # L, to which a change of phase is enclosed
@@ -113,7 +114,7 @@ class Walk:
         model.place(foot, model.straight)
         nearest, link, s = model.nearest_link()
         lower = self._lowest(nearest + _ALONG, s)
-        if lower[0] < link - 1:  # along a face the vibrissa bends at its first edge
+        if s - lower[1] > _FLAT:  # along a face the vibrissa bends at its first edge
             link, s = lower
         start = State(model.straight, link, s, 0.0, False)
         surface = surface_at(model, model.touch(link, s))
