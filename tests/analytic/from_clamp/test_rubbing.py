@@ -166,3 +166,15 @@ def test_noise_next_to_no_load_says_nothing_of_friction(seed):
     found = estimate_friction(remembering(solve_sweep(case), 0.003, seed))
     assert found.coefficient == pytest.approx(0.2, abs=1.5 * found.uncertainty)
     assert found.uncertainty < 0.03
+
+
+@pytest.mark.parametrize(("radius", "height"), [(0.5, 0.5), (0.4, 0.6)])
+def test_hum_next_to_no_load_says_nothing_of_friction(radius, height):
+    """It gave -0.03 and 0.03 instead of 0.2, each +- 0.01."""
+    case = Case(Beam(radius=0.002), circle(radius, lowest=(0.05, height)), Sweep(300), friction=0.2)
+    exact, turn = solve_sweep(case), 2 * np.pi * np.arange(300) / 17.3
+    sizes = relative_noise(exact, 0.004).items()
+    hum = {n: exact.values(n) + size * np.sin(turn + i) for i, (n, size) in enumerate(sizes)}
+    found = estimate_friction(Readings(exact.table.assign(**hum), exact.beam))
+    assert found.coefficient == pytest.approx(0.2, abs=found.uncertainty)
+    assert found.uncertainty < 0.01
