@@ -58,15 +58,16 @@ def read_run(folder: Path) -> StoredRun:
 
 def _sweeps(folder: Path) -> tuple[Path, Path]:
     found = [*folder.glob("mujoco-*.parquet")]
-    sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
-    if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
-        there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
+    whole = [path for path in found if not path.name.endswith(".partial.parquet")]
+    if not (folder / "analytic.parquet").is_file() or len(whole) != 1:
+        sweeps = sorted(path.name for path in folder.glob("*.parquet"))
+        there = ", ".join(sweeps) or "no sweep"
         allowed = "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet"
         remedy = "make one: vibrissa run CASE --out DIR"
-        if there.endswith(".parquet") and "," in there:
+        if len(sweeps) > 1:
             remedy += "; of other engines' sweeps, vibrissa compare A.parquet B.parquet"
         raise InputError("DIR", f"{folder} ({there[:200]})", allowed, remedy)
-    return folder / "analytic.parquet", sweeps[0]
+    return folder / "analytic.parquet", whole[0]
 
 
 def read_stored(file: Path, kind: type[_T]) -> _T:
