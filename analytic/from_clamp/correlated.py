@@ -21,6 +21,9 @@ _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZE
 _WHITE = 5.0  # times as likely beforehand as all that remembers
 _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
 _PRIOR = _LONG / _LONG.sum() / _WHITE
+# Where noise is stated, what remembers hides less, and counts as much as white noise: of AR(0.9)
+# few stations would be taken for white.
+_STATED = np.log(np.sqrt(_PRIOR) / np.sqrt(_PRIOR).sum() / _PRIOR)
 _LOG_PRIOR = np.log(np.concatenate([[[1.0]], _PRIOR]))
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _STATED_TO = 0.2  # relative, of a stated noise's variance: the noise is known to a tenth
@@ -154,6 +157,7 @@ def estimate(
         # Noise that is stated has no more in all than that, or than what is left.
         total = square * (1 + _GRID[:, 1:]) / np.maximum(freedom * least**2, square[0])
         weights -= (np.log(np.maximum(total, 1.0)) / _STATED_TO) ** 2 / 2
+        weights[1:] += _STATED
     likely = softmax(weights, axis=0)
     draws = _DRAWS if known else _FEW  # where only the noise is sought
     draw = np.random.default_rng(seed)
