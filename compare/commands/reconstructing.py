@@ -159,7 +159,7 @@ def _rubbing(
         )
         if found.passes is not None and not found.passes.consistent:
             terminal.print_line(f"friction: {consistency_line(found.passes)}")
-        friction = found.coefficient
+        friction = max(found.coefficient, 0.0)  # below it is by chance
     for one in passes:
         check_support(one.support._replace(friction=friction), one.beam, signed=True)
     return [one.with_friction(friction) for one in passes]

@@ -5,7 +5,18 @@ import json
 import pytest
 import trimesh
 
-from analytic import REAL_CASE_NAMES, Readings, named_case, solve_sweep
+from analytic import (
+    REAL_CASE_NAMES,
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    relative_noise,
+    solve_sweep,
+)
+from tests.analytic.noisy import noisy
 from tests.compare.command import vibrissa
 
 
@@ -108,3 +119,12 @@ def test_friction_is_estimated_from_the_clamp(tmp_path):
     for wrong, said in (("2", "between -1 and 1"), ("much", "a number or auto")):
         done = vibrissa("reconstruct", "rig.csv", "--friction", wrong, cwd=tmp_path)
         assert done.returncode == 2 and said in done.stderr
+
+
+@pytest.mark.slow
+def test_an_object_without_friction_is_fitted_though_its_estimate_is_below_zero(tmp_path):
+    exact = solve_sweep(Case(Beam(), circle(1.0, lowest=(0.0, 0.4)), Sweep(60)))
+    noisy(exact, relative_noise(exact, 0.01), 0).write(tmp_path / "rig.csv")
+    options = "--friction", "auto", "--fit", "circle", "--noise", "0.01", "--out", "found"
+    done = vibrissa("reconstruct", "rig.csv", *options, cwd=tmp_path)
+    done.ended(0, "friction coefficient -0.00")
