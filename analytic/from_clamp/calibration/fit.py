@@ -17,7 +17,8 @@ from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.problem.errors import InputError
 from analytic.solver.columns import Units, to_columns
-from analytic.solver.general.states import Vibrissa, rates_at
+from analytic.solver.general.balance import rates_at
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_beside
 from analytic.solver.general.sweep import solve
 
