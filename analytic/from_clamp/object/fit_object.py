@@ -240,6 +240,7 @@ def _object(
         penalty=len(kinds) * float(np.log(data)),
         stations=stations,
         noise=known.noise,
+        judged=known.noise.judged_by(fit.measured.rests),
         passes=alike,
     )
 
