@@ -24,10 +24,10 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 from analytic.space.problem.recorder import stated
+from analytic.space.solver.branch import Held
 from analytic.space.solver.contact import Contact, Plane, Scene
-from analytic.space.solver.rubbing import Rubbed, Rubbing
 from analytic.space.solver.stability import margin, second_variation
-from analytic.space.solver.walk import Gliding
+from analytic.space.solver.walk import Walk
 
 _SOLVED = 1e-11  # L, EI/L, rad: of the residual by the closed form
 _CERTIFIED = 1e-9  # of that by integration, which is good to 1e-12
@@ -72,12 +72,11 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     scene = Scene(way.body, case.path.clamp_tangent, way.radius)
     travel = case.path.travel
     with threadpool_limits(1):  # the matrices are small
-        walker = Rubbing(scene, way, case.friction) if case.friction else Gliding(scene, way)
-        walked = walker.along(travel / length)
+        walked = Walk(scene, way, case.friction).along(travel / length)
     feet = case.path.at(travel)
     touching = [contact is not None for contact in walked.contacts]
     held = [one for one in walked.contacts if one is not None]
-    missed = iter(_missed([_contact(one) for one in held], feet[touching] / length, scene))
+    missed = iter(_missed([one.state.contact for one in held], feet[touching] / length, scene))
     rows = [
         _row(one, next(missed), scene, beam) if one else _free(status)
         for one, status in zip(walked.contacts, walked.statuses, strict=True)
@@ -91,13 +90,9 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     return _with_certificate(readings) if certified else readings
 
 
-def _contact(held: Contact | Rubbed) -> Contact:
-    return held if isinstance(held, Contact) else held.state.contact
-
-
-def _row(held: Contact | Rubbed, missed: float, scene: Scene, beam: Beam) -> dict[str, object]:
+def _row(held: Held, missed: float, scene: Scene, beam: Beam) -> dict[str, object]:
     """One station that touches."""
-    contact = _contact(held)
+    contact = held.state.contact
     plane, spot = contact.plane, contact.spot
     force = -contact.force * plane.normal
     moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
@@ -112,11 +107,11 @@ def _row(held: Contact | Rubbed, missed: float, scene: Scene, beam: Beam) -> dic
         "residual": missed,
         "status": "ok" if missed <= _SOLVED else "diverged",
     }
-    if isinstance(held, Contact):
+    law = held.stretch.panel.law
+    if not law.friction:
         row["stability"] = margin(second_variation(contact, scene.radius))
     else:
-        slides = not held.stretch.panel.law.sticks
-        numbers = *held.state.rub, float(np.linalg.norm(held.velocity)) if slides else 0.0
+        numbers = *held.state.rub, 0.0 if law.sticks else float(np.linalg.norm(held.velocity))
         row |= dict(zip(_RUBBED, numbers, strict=True))
     return row
 

@@ -138,7 +138,8 @@ def test_another_body_is_none_of_them(sweeps):
     box = swept(polyhedron(corners))
     with pytest.raises(InputError, match="none of them"):
         fit_body(box, "auto")
-    assert not fit_body(sweeps["ellipsoid"], "sphere").explains
+    found = fit_body(sweeps["ellipsoid"], "auto")
+    assert found.family == "ellipsoid" and not found.rivals.get("sphere", (0.0, False))[1]
 
 
 def test_rows_without_readings_show_no_noise():

@@ -10,7 +10,7 @@ from analytic.space.checks.rod import deflected_rods
 from analytic.space.problem.readings import CONTACT_POINT, FOOT
 from analytic.space.solver.contact import Scene
 from analytic.space.solver.stability import is_stable
-from analytic.space.solver.walk import Gliding
+from analytic.space.solver.walk import Walk
 
 LINKS, STIFF = 80, 1e6
 RADIUS = 0.005
@@ -58,8 +58,9 @@ def test_a_tip_hops_where_its_face_ends():
     case = SpatialCase(body=body, path=FootPath([[1.0, 0.65], [0.3, 0.65]], stations=2))
     events = solve_space(case).provenance["events"]
     place = next(event["travel"] for event in events if event["kind"] == "hop")
-    walker = Gliding(Scene(body, case.path.clamp_tangent, RADIUS), case.way)
-    before, after = walker.along(place + np.array([-1e-9, 1e-8])).contacts
+    walker = Walk(Scene(body, case.path.clamp_tangent, RADIUS), case.way)
+    walked = walker.along(place + np.array([-1e-9, 1e-8])).contacts
+    before, after = (held.state.contact for held in walked)
     point = before.spot.point
     faces = np.unique(body.normals[np.abs(body.normals @ point - body.heights) < 1e-7], axis=0)
     assert len(faces) == 2  # an edge

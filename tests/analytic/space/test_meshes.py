@@ -1,5 +1,7 @@
 """Convex meshes from files in space."""
 
+import zlib
+
 import numpy as np
 import pytest
 import trimesh
@@ -14,6 +16,7 @@ from analytic.space import (
     solve_space,
     sphere,
 )
+from tests.net.problems import spatial
 
 PATH = FootPath([[1.3, 0.3], [-1.5, 0.25]], stations=40)
 
@@ -79,6 +82,17 @@ def test_next_to_an_edge_the_nearest_point_is_on_the_right_side_of_it():
                 spot = body.nearest(middle + side * aside * outward + apart * normal, apart)
                 on_face = bool((spot.turning == 0).all())
                 assert on_face == (side < 0), (face, i, side)
+
+
+def test_what_happens_past_a_seam_does_not_depend_on_the_stations(tmp_path, monkeypatch):
+    """A file's triangles of one face are 1e-7 rad apart: phases changed at the next station."""
+    monkeypatch.chdir(tmp_path)
+    seed = zlib.crc32(b"compare/space-capsule")
+    cases = (spatial("capsule", n, np.random.default_rng(seed)) for n in (8, 30))
+    every = [solve_space(case) for case in cases]
+    (few, more) = ([(e["kind"], e["travel"]) for e in x.provenance["events"]] for x in every)
+    assert [kind for kind, _ in few] == [kind for kind, _ in more]
+    assert [at for _, at in few] == pytest.approx([at for _, at in more], abs=1e-8)
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from analytic.space import cylinder, ellipsoid, polyhedron
+from analytic.space.problem.bodies.body import Feature
 from analytic.space.solver.contact import Plane, Scene, contact_at
 from analytic.space.solver.stability import margin, second_variation
 from tests.analytic.space.second_variation import least_eigenvalue
@@ -33,7 +34,8 @@ def judged(body, place, random):
     least = margin(second_variation(state, RADIUS))
     if abs(least) < NEUTRAL:
         return None
-    assert (least > 0) == (by_elements(body.feature(state.spot), state) > 0), (tangent, alpha)
+    touched = body if body.smooth else Feature.of(state.spot)
+    assert (least > 0) == (by_elements(touched, state) > 0), (tangent, alpha)
     return tangent, least > 0
 
 
