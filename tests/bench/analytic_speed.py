@@ -10,7 +10,7 @@ from rich.table import Table
 from analytic import Beam, Case, catenary, named_case, solve_contact, solve_sweep, solve_sweeps
 from analytic.checks import boundary_value_problem, tip_angle_by_shooting
 from tests.bench.ratios import command, process
-from tests.bench.timing import least_seconds
+from tests.bench.timing import cpu_seconds, least_seconds
 
 THIN = Beam(radius=0.0)
 CONTACTS, BATCH = 100_000, 82
@@ -18,12 +18,13 @@ CONTACTS, BATCH = 100_000, 82
 
 def main(quick: bool) -> None:
     """Print what a contact, a sweep and a run take."""
+    timed = cpu_seconds if quick else least_seconds
     many = CONTACTS // 100 if quick else CONTACTS
     case, profile = named_case("catenary"), catenary(0.5, -0.8)
     slopes = {"A": np.linspace(-31, -15, many), "B": np.linspace(-14, 30, many)}
     tip, low = (solve_contact(profile, [np.deg2rad(x)], THIN).iloc[0] for x in (-24, 0))
     seconds = {
-        f"a contact in Phase {phase}, in an array": least_seconds(
+        f"a contact in Phase {phase}, in an array": timed(
             partial(solve_contact, profile, np.deg2rad(degrees), THIN)
         )
         / many
@@ -46,7 +47,7 @@ def main(quick: bool) -> None:
         "`vibrissa run catenary`": partial(process, command("run", "catenary", *short)),
         "Python and its imports": partial(process, "import mujoco, pandas, matplotlib.pyplot"),
     }
-    seconds |= {name: least_seconds(call, 1 if quick else 5) for name, call in calls.items()}
+    seconds |= {name: timed(call) for name, call in calls.items()}
     table = Table("closed form", "CPU ms")
     for name, took in seconds.items():
         table.add_row(name, f"{1e3 * took:.3g}")
