@@ -259,6 +259,19 @@ def test_uncertainty_is_as_large_as_estimates_scatter(level, tip, times):
     assert times < 100 or (np.abs(found) <= 1).sum() >= 89
 
 
+def test_passes_are_pooled():
+    """Four, to both sides: half of one's uncertainty."""
+    left = swept(0.3, stations=60)
+    ways = [one.with_friction(0.0) for one in (left, left.mirrored())]
+    noise = relative_noise(ways, 1e-2)
+    passes = [noisy(one, noise, seed) for seed, one in enumerate(2 * ways)]
+    one, four = (estimate_friction(some, noise) for some in (passes[:1], passes))
+    assert four.uncertainty == pytest.approx(one.uncertainty / 2, rel=0.3)
+    assert abs(four.coefficient - 0.3) < 2 * four.uncertainty
+    assert four.passes.consistent and one.passes is None
+    assert not estimate_friction([*passes, swept(0.0, stations=60)]).passes.consistent
+
+
 def test_only_phase_b_shows_it():
     raised = replace(named_case("tip-only"), friction=0.3)
     with pytest.raises(InputError, match="stations of Phase B = 0: must be 5 or more"):

@@ -24,8 +24,8 @@ from analytic import (
 )
 from analytic.problem.support import Support
 from analytic.problem.table import as_table
-from analytic.solver.columns import Units
 from analytic.solver.general import sweep as general
+from analytic.solver.general.columns import Units
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.residuals import residuals
 from tests.fuzz.contours import KINDS, trial

@@ -10,8 +10,8 @@ from analytic import Beam, Sweep, catenary, parabola, solve_contact, solve_sweep
 from analytic.problem.case import Case
 from analytic.problem.support import Support
 from analytic.problem.table import as_table
-from analytic.solver.columns import Units, to_columns
 from analytic.solver.contact import contacts
+from analytic.solver.general.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")

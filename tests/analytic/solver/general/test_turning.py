@@ -30,7 +30,7 @@ from analytic import (
     two_circles,
 )
 from analytic.from_clamp.shape import deflected_shapes
-from analytic.problem.reach import between
+from analytic.problem.quantities import between
 from analytic.problem.support import Support
 from compare import compare
 from compare.simulate.dispatch import simulate

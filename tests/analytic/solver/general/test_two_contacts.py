@@ -26,8 +26,9 @@ from analytic import (
 from analytic.from_clamp.shape import curvatures, deflected_shapes
 from analytic.problem.columns import SECOND_CONTACT
 from analytic.problem.table import as_table
+from analytic.solver.general.balance import states_at
 from analytic.solver.general.pair import Pair
-from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.sweep import solve
 from tests.analytic.solver.general.sound import EXACT, FORCES, PROFILES, rows
 
