@@ -95,16 +95,6 @@ def test_each_piece_is_interpolated_by_itself(reference, way):
     np.testing.assert_allclose(found.table["contact_arc_length"], nearest, rtol=1e-12)
 
 
-@pytest.mark.parametrize("stations", [7, 40, 300])
-def test_other_numbers_of_stations(stations):
-    x = np.linspace(1.19, -0.79, stations)
-    found = paired(made(x))
-    assert sum(found.counts.values()) == stations
-    for name in CLAMP_READINGS:
-        expected = own_spline(name, found.table["at"].to_numpy())
-        np.testing.assert_allclose(found.table[f"{name}_reference"], expected, rtol=1e-12)
-
-
 def test_the_phase_is_the_references_and_contact_in_one_alone_is_not_compared():
     late = made(X, phase=np.where(X > 0.7, "free", np.where(X < 0.3, TIP, TANGENT)))
     found = paired(late)

@@ -7,7 +7,6 @@ import pytest
 
 from analytic import CLAMP_READINGS, InputError
 from compare.explain.budget import Budget, budget, common_stations, largest_rms
-from compare.explain.fit import Suspect
 from compare.explain.variations import STEP
 from tests.compare.synthetic import (
     EXACT,
@@ -169,11 +168,6 @@ def test_the_closed_form_says_the_same_of_softness_and_facets():
     checks = {name: [by[r] for r in CLAMP_READINGS] for name, by in found.checks.items()}
     np.testing.assert_allclose(checks["softness"], SIZE * SIZES, rtol=1e-9)
     np.testing.assert_allclose(checks["facets"], SIZE * SIZES, rtol=1e-9)
-
-
-def test_a_suspect_says_of_what_its_share_is():
-    sizes = {name: Suspect(name, 5e-3, 1.0).size for name in ("foot_x", "height", "radius")}
-    assert sizes == {"foot_x": "+0.50% of L", "height": "+0.50% of L", "radius": "+0.50%"}
 
 
 def test_a_fault_of_the_physics_is_suspected_by_its_size():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cbook import is_math_text
@@ -77,6 +77,7 @@ def test_all_text_is_on_the_picture(comparison):
     assert 0 <= box.y0 < box.y1 <= figure.bbox_inches.y1
 
 
+@settings(max_examples=30)
 @given(st.text())
 def test_any_name_can_be_drawn(text):
     drawn = label(text)
