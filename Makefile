@@ -138,7 +138,7 @@ install-engines: .venv-engines/installed   ## build .venv-engines with all engin
 # An extra may lean on what another one brings: each is alone, in a copy (of links) of what all need.
 test-engines:    ## the tests of the other engines, each in an environment of its own; ARGS="-m slow" for more
 	$(PYTHON) -m venv --clear .venv-alone/base
-	.venv-alone/base/bin/python -m pip install --quiet --disable-pip-version-check --editable . pytest pytest-xdist
+	.venv-alone/base/bin/python -m pip install --quiet --disable-pip-version-check --compile --editable . pytest pytest-xdist  # compiled once, for all copies
 	set -e; for extra in $(EXTRAS); do \
 	  alone=.venv-alone/$$extra; rm -rf $$alone; cp -al .venv-alone/base $$alone; \
 	  $$alone/bin/python -m pip install --quiet --disable-pip-version-check --editable ".[$$extra]" \

@@ -76,17 +76,24 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
     yield Table(caption, head, rows, words=(0, 4))
     if isinstance(found, FittedObject):
         widest = quantity(float(found.band["half_width"].max()), "length", found.case.beam)
-        yield Text(f"where it was touched, the contour is known to {widest} or better (95 %)")
+        yield Text(
+            f"where it was touched, the contour is known to {widest} or better (95 %), if it is of "
+            "this family"
+        )
     if len(found.rivals) > 1:
         least = min(bic for bic, _ in found.rivals.values())
         yield Table(
-            "Schwarz's criterion, over the least; the likeliest family has 0, and 10 is decisive",
+            "Schwarz's criterion, over the least: the likeliest family has 0",
             ("family", "more by", "explains the readings"),
             [
                 (name, f"{bic - least:.1f}", "yes" if explains else "no")
                 for name, (bic, explains) in found.rivals.items()
             ],
             words=(0, 2),
+        )
+    if found.others:
+        yield Text(
+            f"it may as well be {' or '.join(found.others)}: the readings do not rule that out"
         )
     if isinstance(found, FittedObject) and found.passes is not None:
         yield from _of_passes(found, found.passes)

@@ -30,12 +30,17 @@ def chosen(*fits):
     return likeliest("auto", tuple(by_name), by_name.__getitem__, otherwise="a corner")
 
 
-@pytest.mark.parametrize(("worse", "explains"), [(8.0, True), (12.0, False)])
-def test_what_is_decisively_less_likely_does_not_explain(worse, explains):
-    found = chosen(fitted("circle", -100.0), fitted("ellipse", -100.0, penalty=worse))
+@pytest.mark.parametrize(
+    ("white", "penalty", "explains"), [(-104.0, 0.0, True), (-106.0, 0.0, False), (-99, 25.0, True)]
+)
+def test_what_is_decisively_less_likely_does_not_explain(white, penalty, explains):
+    """Unless it is so by the number of its parameters alone: a circle is an ellipse, too."""
+    found = chosen(fitted("circle", -100.0), fitted("ellipse", white, penalty=penalty))
     assert found.family == "circle"
+    worse = penalty - 2 * (white + 100)
     assert found.rivals["ellipse"][0] - found.rivals["circle"][0] == pytest.approx(worse)
     assert [good for _, good in found.rivals.values()] == [True, explains]
+    assert found.others == ["ellipse"] * explains
 
 
 def test_noise_that_remembers_does_not_excuse_a_wrong_object():

@@ -112,6 +112,18 @@ def test_noise_is_stated_as_uncertainty():
     assert abs(found.coefficient - 0.3) < 2 * found.uncertainty
 
 
+def test_passes_are_pooled():
+    """Four, to both sides: half of one's uncertainty."""
+    ways = [swept(0.3, stations=60, direction=way).with_friction(0.0) for way in ("left", "right")]
+    noise = relative_noise(ways, 1e-2)
+    passes = [noisy(one, noise, seed) for seed, one in enumerate(2 * ways)]
+    one, four = (estimate_friction(some, noise) for some in (passes[:1], passes))
+    assert four.uncertainty == pytest.approx(one.uncertainty / 2, rel=0.3)
+    assert abs(four.coefficient - 0.3) < 2 * four.uncertainty
+    assert four.passes.consistent and one.passes is None
+    assert not estimate_friction([*passes, swept(0.0, stations=60)]).passes.consistent
+
+
 def test_the_object_is_found_without_knowing_the_friction():
     readings = swept(0.4, -0.3, 6.0)
     found = estimate_friction(readings.with_friction(0.0))

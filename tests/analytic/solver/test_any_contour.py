@@ -117,7 +117,7 @@ def test_an_object_that_ends_has_a_corner_under_a_thick_vibrissa_too():
 )
 def test_residuals_show_a_wrong_answer(column):
     """One part in ten thousand off, in the table that is then checked."""
-    from analytic.solver.columns import Units
+    from analytic.solver.general.columns import Units
     from analytic.solver.general.states import Vibrissa
     from analytic.solver.residuals import residuals
 

@@ -93,8 +93,11 @@ def test_other_contours(tmp_path, profile, said):
 def test_friction_is_estimated_from_the_clamp(tmp_path):
     case = named_case("rubbing")
     solve_sweep(case).with_friction(0.0).write(tmp_path / "rig.csv")
-    done = vibrissa("reconstruct", "rig.csv", "--friction", "auto", "--out", "found", cwd=tmp_path)
+    (tmp_path / "again.csv").write_text((tmp_path / "rig.csv").read_text())
+    passes = "rig.csv", "again.csv"
+    done = vibrissa("reconstruct", *passes, "--friction", "auto", "--out", "found", cwd=tmp_path)
     done.ended(0, "friction coefficient 0.3000 +-")
+    assert done.stdout.count("friction coefficient") == 1
     for wrong, said in (("2", "between -1 and 1"), ("much", "a number or auto")):
         words = ("reconstruct", "rig.csv", "--friction", wrong)
         vibrissa(*words, cwd=tmp_path).refused(said)

@@ -9,7 +9,8 @@ import pytest
 from analytic import Beam, Case, Sweep, catenary, certify, find_events, solve_sweep
 from analytic.problem.clamp_path import along_x
 from analytic.problem.support import Support
-from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.balance import states_at
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_near
 from tests.analytic.solver.general.sound import assert_confirmed
 

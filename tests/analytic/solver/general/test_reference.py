@@ -9,8 +9,8 @@ import pytest
 from analytic import Beam, catenary, parabola, solve_contact
 from analytic.problem.support import Support
 from analytic.problem.table import as_table
-from analytic.solver.columns import Units, to_columns
 from analytic.solver.contact import contacts
+from analytic.solver.general.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")

@@ -29,7 +29,7 @@ from analytic import (
     turn_back,
 )
 from analytic.from_clamp.shape import deflected_shapes
-from analytic.problem.reach import between
+from analytic.problem.quantities import between
 from compare import compare
 from compare.simulate.dispatch import simulate
 from engines.apart import _sweep

@@ -28,8 +28,9 @@ from analytic import (
 from analytic.from_clamp.shape import curvatures, deflected_shapes
 from analytic.problem.columns import SECOND_CONTACT
 from analytic.problem.table import as_table
+from analytic.solver.general.balance import states_at
 from analytic.solver.general.pair import Pair
-from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.sweep import solve
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_two_contacts.csv")

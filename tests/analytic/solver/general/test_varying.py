@@ -28,8 +28,8 @@ from analytic.problem.beam import Unloaded
 from analytic.problem.rest import first_touch
 from analytic.problem.rod import RodProperties
 from analytic.problem.support import Support
-from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
+from analytic.solver.general.columns import Units
 from analytic.solver.general.path import follow
 from analytic.solver.general.span import march
 from analytic.solver.general.states import Vibrissa
