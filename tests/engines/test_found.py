@@ -218,11 +218,6 @@ def test_a_case_file_names_its_engines(tmp_path):
         load_job(str(tmp_path / "case.toml"))
 
 
-def test_what_moves_is_mujocos_alone(tmp_path):
-    done = vibrissa("run", "tip-only", "--motion", "--engine", "drake", cwd=tmp_path)
-    done.refused("in motion")
-
-
 @pytest.mark.slow
 def test_an_engine_is_an_axis_of_a_study(odd_engines, tmp_path):
     """In this process: the workers of a study would not know of a folder only tests know."""

@@ -80,18 +80,6 @@ def test_conditions_by_name():
         chosen_conditions(["frictoin"])
 
 
-def test_deciding_never_integrates_far_beyond_the_tip():
-    """A small force may be of a tangential contact a thousand lengths away."""
-    truth = solve_sweep(CONDITIONS["curved"].true(named_case("tip-only")))
-    found = method_errors(as_believed(truth, named_case("tip-only")), ["decision"], [1e-2])
-    assert found["seconds"].max() < 0.05
-
-
-def test_a_name_that_there_is_not():
-    with pytest.raises(InputError, match="method = 'kanecko'"):
-        method_errors(solve_sweep(CIRCLE), ["kanecko"])
-
-
 def test_readings_without_contacts_cannot_judge():
     sweep = solve_sweep(CIRCLE)
     bare = Readings(sweep.table[["foot_x", "force_x", "force_y", "moment_z"]], sweep.beam)

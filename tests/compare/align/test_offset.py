@@ -91,12 +91,6 @@ def test_a_model_that_differs(exact, simulated, planted):
     assert offset.value == pytest.approx(planted, abs=2.5e-4)
 
 
-def test_a_sweep_that_ends_early_is_enough():
-    exact = exact_sweep("catenary")
-    part = replace(exact, table=exact.table.iloc[:80].reset_index(drop=True))
-    assert found(exact, displaced(part, 0.05)).value == pytest.approx(0.05, abs=1e-4)
-
-
 def test_offset_and_lag_from_two_sweeps():
     """A stage 0.03 L off, whose readings lag by 0.01 L of way: each sweep sees their sum."""
     case = named_case("parabola")

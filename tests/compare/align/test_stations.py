@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analytic import CLAMP_READINGS, Beam, InputError, Readings
+from analytic import CLAMP_READINGS, Readings
 from compare.align.jumps import jumps
-from compare.align.stations import Alignment, align, check_same_way, interpolant
+from compare.align.stations import Alignment, align, interpolant
 from tests.compare.synthetic import BEAM, classified
 
 TIP, TANGENT = "tip", "tangent"
@@ -218,16 +218,6 @@ def test_where_readings_jump_or_bend():
     bent = np.abs(x - (x[40] + x[41]) / 2)[None] * 3
     assert jumps(x, bent, none).tolist() == [40]
     assert jumps(x[:2], smooth[:, :2], none).size == 0
-
-
-def test_sweeps_that_have_nothing_in_common():
-    with pytest.raises(InputError):
-        paired(made(X - 3))
-    with pytest.raises(InputError):
-        check_same_way(
-            REFERENCE,
-            replace(made(X), beam=Beam(length=2.0, flexural_rigidity=3.0001, radius=0.01)),
-        )
 
 
 def test_what_is_interpolated_by():

@@ -49,21 +49,6 @@ def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (("length = 1.0", "length = -1.0"), "beam.length = -1.0"),
-        (("length = 1.0", "lenght = 1.0"), "did you mean length?"),
-        (("[sweep]", "[sweeep]"), "did you mean sweep?"),
-        (("[beam]", "[beam"), "TOML"),
-    ],
-)
-def test_bad_case_files(tmp_path, change, said):
-    (tmp_path / "case.toml").write_text(CASE.replace(*change))
-    vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path).refused(said)
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["run", "catenry"], "did you mean catenary?"),

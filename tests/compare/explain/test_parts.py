@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
-from compare.explain.budget import Budget, budget, common_stations, largest_rms
+from compare.explain.budget import Budget, budget, common_stations
 from compare.explain.variations import STEP
 from tests.compare.synthetic import (
     EXACT,
@@ -211,10 +211,6 @@ def test_the_window_before_the_snap_off_is_left_out():
     np.testing.assert_array_equal(kept, TOUCHING & (at > at[89] - 1e-3 + 0.15))
     found = budget(ends, at_rest(), VARIED)
     assert found.stations == common_stations(ends, [EXACT]).sum() == TOUCHING.sum() - 1
-
-
-def test_the_largest_disagreement_is_of_the_three_readings():
-    assert largest_rms(EXACT, at_rest(softness=SIZE)["base"]) == pytest.approx(2 * SIZE, 1e-4)
 
 
 def test_sweeps_that_refining_does_not_change_have_no_discretisation():

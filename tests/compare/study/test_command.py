@@ -97,15 +97,6 @@ def test_another_base_leaves_only_its_own_rows(folder, finished, study):
     )
 
 
-@pytest.mark.parametrize("name", ["../outside", "/tmp/outside", ".hidden", "a/b", ""])
-def test_a_name_stays_in_its_folder(folder, command, name):
-    (folder / "grid.toml").write_text(EVENTS_ONLY.replace("[study]", f'[study]\nname = "{name}"'))
-    done = command("study", "grid.toml")
-    assert done.returncode == 2
-    assert "line 3" in done.stderr
-    assert [path.name for path in folder.iterdir()] == ["grid.toml"]
-
-
 @pytest.mark.parametrize("dry", [(), ("--dry-run",)])
 def test_a_huge_product_of_axes_is_refused(folder, study, dry):
     axis = "{ from = 0.1, to = 0.2, count = 10000 }"

@@ -22,16 +22,6 @@ def differs(*given):
     return any(row.state == "differs" for row in record.verify(given))
 
 
-def test_there_are_sources_enough():
-    """Without those that agree only by a constant set by their own numbers."""
-    given = record.sources()
-    counted = [one for one in given if any("state" not in {**one, **row} for row in one["row"])]
-    assert len(counted) >= 12
-    assert sum(one.get("contact", False) for one in counted) >= 6
-    rows = [{**one, **row} for one in given for row in one["row"]]
-    assert all(row["why"] for row in rows if "within" in row or "state" in row)
-
-
 def test_quick_sources_hold():
     assert not differs(*sources(*QUICK))
 
