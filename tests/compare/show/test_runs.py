@@ -67,10 +67,8 @@ def test_names_settings_and_blame_are_no_markup(runs):
     ("file", "content"),
     [
         ("comparison.json", '{"verdict": '),
-        ("comparison.json", "{}"),
         ("comparison.json", "[" * 100_000),
         ("comparison.json", '{"verdict": "agrees", "disagreement": {"force_x": 1}}'),
-        ("budget.json", '{"blame": 1}'),
         ("engines.json", '{"case": "catenary"}'),
     ],
 )
