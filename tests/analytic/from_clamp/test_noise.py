@@ -124,14 +124,14 @@ KINDS = [white, autoregressive(0.9), autoregressive(0.99), walk, hum, quantised,
 NAMES = ["white", "AR(0.9)", "AR(0.99)", "walk", "hum", "quantised", "zero", "zero alone"]
 
 
-def errors(kind, unknowns, draws, seed=0):
+def errors(kind, unknowns, draws, seed=0, least=0.0, every=1):
     """Errors over their standard uncertainties, shape (draws, unknowns)."""
-    design = np.stack(sweep(), axis=2)[:, :, unknowns]
+    design = np.stack(sweep(), axis=2)[::every, :, unknowns]
     nuisances = np.broadcast_to(np.eye(3), (len(design), 3, 3))
     rng = np.random.default_rng(seed)
     for _ in range(draws):
         noise = kind(rng, design.shape[:2])
-        found = estimate(noise, design, nuisances, np.full(3, ZERO / NOISE))
+        found = estimate(noise, design, nuisances, np.full(3, ZERO / NOISE), least)
         yield found.numbers / np.sqrt(np.diag(found.covariance))
 
 
@@ -148,6 +148,12 @@ def test_intervals_hold_the_true_values(kind, unknowns):
     held = np.mean(np.abs(found) < 1.96, axis=0)
     assert np.all(held > 0.92)
     assert np.all(held < 0.997)
+
+
+@pytest.mark.slow
+def test_few_stations_do_not_take_a_stated_noise_for_white():
+    found = np.array([*errors(autoregressive(0.9), [0, 1], 60, least=1.0, every=3)])
+    assert np.mean(np.abs(found) < 1.96) > 0.85
 
 
 @pytest.mark.slow
