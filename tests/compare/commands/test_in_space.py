@@ -54,6 +54,13 @@ def test_the_frame_is_the_reason_and_not_the_fit(swept, tmp_path, family):
         assert wrong not in last
 
 
+def test_no_family_of_bodies_is_refused_before_anything_is_written(swept, tmp_path):
+    swept.write(tmp_path / "one.parquet")
+    words = ("one.parquet", "--fit", "circle", "--out", "o")
+    vibrissa("reconstruct", *words, cwd=tmp_path).refused("sphere, ellipsoid")
+    assert not (tmp_path / "o").exists()
+
+
 @pytest.mark.slow
 def test_one_sweep_bounds_no_body(swept, tmp_path):
     swept.write(tmp_path / "one.parquet")
