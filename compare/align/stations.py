@@ -154,7 +154,9 @@ def check_same_beam(
     sizes, others = ((beam.length, beam.base_rigidity) for beam in (one, other))
     if not np.allclose(sizes, others, rtol=1e-9, atol=0):
         what = f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}"
-        remedy = "state the one that was measured: --beam FILE, as the case's own"
+        remedy = (
+            "state the one that was measured: Readings(table, case.beam), of a file --beam FILE"
+        )
         raise InputError("vibrissae of the two sweeps", what, "the same, in the same units", remedy)
 
 

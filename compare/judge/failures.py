@@ -222,7 +222,7 @@ def _contact(found: Measurement) -> Iterator[Failure]:
     said = f"no station in contact in both sweeps ({reasons})"
     if counts["compared"]:
         said = f"all {counts['compared']} stations in contact in both are next to the snap-off"
-    elif counts["one_free"] and not (found.judged["candidate"].phase == "").all():
+    elif counts["one_free"] and not counts["untrusted"]:
         of_all = f"{touching} stations where the reference's is loaded"
         said = f"the candidate's clamp reads no load above its noise at any of the {of_all}"
     todo = "sweep a stretch where both touch, or see why stations are not trusted"

@@ -181,7 +181,8 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
     if along <= _SUSPICIOUS:
         return (
             f"the moment has {torsion:.1%} along the clamp's tangent: the force does not lie in a "
-            "plane with it, as with friction across the vibrissa, a curved one or a wrong tangent"
+            "plane with it, as with components in the clamp's frame (of a file: `--frame clamp`), "
+            "a wrong tangent, friction across the vibrissa, or a curved one"
         )
     if torsion <= _SUSPICIOUS:
         return (
