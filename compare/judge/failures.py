@@ -266,7 +266,8 @@ def untrusted_stretches(readings: Readings | SpatialReadings) -> Iterator[str]:
     if "status" not in readings.table:
         return
     name, (size, unit) = readings.running, readings.running_unit
-    for status, along in readings.table.groupby("status", sort=False)[name]:
+    table = readings.table.assign(**{name: readings.running_values})
+    for status, along in table.groupby("status", sort=False)[name]:
         if status != "ok":
             first, last = along.iloc[[0, -1]] / size
             yield f"{len(along)} {status}, {name} {first:.4g} to {last:.4g} {unit}"

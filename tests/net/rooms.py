@@ -122,9 +122,7 @@ def shapes(readings: plane.Readings) -> list[Any]:
 
 
 def compared(reference: Any, candidate: Any, **given: Any) -> dict[str, Any]:
-    spatial_one = isinstance(reference, space.SpatialReadings)
-    how = getattr(compare, "compare_space", compare.compare) if spatial_one else compare.compare
-    found: Any = how(reference, candidate, **given)
+    found: Any = compare.compare(reference, candidate, **given)
     return {"comparison": found.to_dict(), "worst": found.worst and found.worst.clause}
 
 

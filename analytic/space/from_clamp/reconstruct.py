@@ -123,6 +123,7 @@ def reconstruct_space(
     place, normal, arc_length, criterion = np.split(loaded.contacts(), [3, 6, 7])
     there = (arc_length[0] >= 0) & (arc_length[0] <= LONGEST)
     moment, size = loaded.moment, np.linalg.norm(loaded.moment, axis=1)
+    size[size == 0] = np.inf  # no part of no moment is along anything
     lever = moment / np.linalg.norm(loaded.force, axis=1)[:, None]
     along_noise = lever**2 @ deviation[:3] ** 2 + normal.T**2 @ deviation[3:] ** 2
     uncertainty, sine_spread = _spread(loaded, stated, seed)
@@ -233,7 +234,7 @@ def _hollow(found: pd.DataFrame) -> str | None:
         return None
     return (
         "the contacts lie on a hollow surface, no convex body's: signs (they are the clamp's "
-        "action on the vibrissa), axes or frame are others"
+        "action on the vibrissa), axes, frame or the rows' order are others"
     )
 
 

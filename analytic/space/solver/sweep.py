@@ -11,7 +11,7 @@ from analytic.from_clamp.contact import contact_bent_right
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import require
-from analytic.solver.columns import engine
+from analytic.solver.general.columns import engine
 from analytic.space.checks.rod import rod_residuals
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (

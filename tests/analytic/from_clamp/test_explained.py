@@ -19,6 +19,7 @@ from analytic import (
     solve_sweep,
 )
 from analytic.from_clamp.passes import alike_by_chance
+from tests.analytic.noisy import noisy
 
 LEANING = Case(Beam(), circle(0.25, (0.05, 0.8)), Sweep(260), clamp_angle=np.radians(2.0))
 UPRIGHT = replace(LEANING, clamp_angle=0.0)
@@ -29,16 +30,8 @@ def passes(case, rng, memory, count=4, level=0.01):
     """Passes whose noise of 1 % remembers, as a rig's: what is free shows it."""
     exact = solve_sweep(case)
     size = relative_noise(exact, level)
-    found = []
-    for _ in range(count):
-        white = rng.standard_normal((3, 500 + len(exact.table))) * np.sqrt(1 - memory**2)
-        noise = lfilter([1], [1, -memory], white, axis=1)[:, 500:]
-        columns = {
-            n: exact.values(n) + x * z for (n, x), z in zip(size.items(), noise, strict=True)
-        }
-        known = {**exact.provenance, "free_noise": size}
-        found.append(replace(exact, table=exact.table.assign(**columns), provenance=known))
-    return found
+    exact = replace(exact, provenance={**exact.provenance, "free_noise": size})
+    return [noisy(exact, size, rng, memory) for _ in range(count)]
 
 
 @pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.slow), 0.9])
@@ -62,7 +55,7 @@ def test_files_without_a_rigs_word_show_their_noise_where_nothing_touches():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.slow), 0.9])
+@pytest.mark.parametrize("memory", [0.0, 0.9])
 def test_another_object_is_no_noise_that_remembers(memory):
     wide = replace(UPRIGHT, profile=circle(0.3, (0.05, 0.75)))
     for count in (1, 4):
@@ -82,7 +75,7 @@ def test_what_all_passes_leave_alike_is_no_noise():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [1, 2])
 def test_what_remembers_longer_than_a_pass_may_be_no_noise(count):
     """The same object past one pass: it left 1.1 times the noise, and was called right."""
     case = replace(UPRIGHT, sweep=Sweep(600))
@@ -156,14 +149,10 @@ def test_a_sign_that_hides_the_numbers_is_named():
         calibrate(other, UPRIGHT, ["flexural_rigidity", "offset"])
 
 
-def test_rows_in_reverse_order_are_named_as_that():
+def test_passes_that_cannot_be_one_rigs_are_named():
     (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
     back = replace(one, table=one.table.iloc[::-1].reset_index(drop=True))
     with pytest.raises(InputError, match="moment of pass 1 is that of a sweep to the other side"):
         calibrate(back, UPRIGHT)
-
-
-def test_passes_of_different_rigs_are_named():
-    (one,) = passes(UPRIGHT, np.random.default_rng(6), 0.0, 1)
     with pytest.raises(InputError, match=r"vibrissae = L = 1, EI = 1, .* and L = 2, EI = 1, r"):
         calibrate([one, replace(one, beam=Beam(2.0))], UPRIGHT)

@@ -13,7 +13,7 @@ from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 
 from analytic import Beam, InputError, Readings, named_case, solve_sweep
-from tests.analytic.problem.given import damage, refusal
+from tests.analytic.problem.given import refusal
 
 RIG = "foot_x,force_x,force_y,moment_z\n"
 FOUR = {
@@ -103,15 +103,6 @@ def test_whatever_holds_numbers_is_a_reading(column):
     assert sweep.table["moment_z"].dtype == float
 
 
-def test_a_table_of_ones_own():
-    """Any index, integer positions, repeated and unsorted rows: they are somebody's measurement."""
-    table = pd.DataFrame({**FOUR, "foot_x": [1, 0, 0]}, index=["a", "b", "b"])
-    sweep = Readings.of(table)
-    assert sweep.values("foot_x").tolist() == [1, 0, 0]
-    assert sweep.table.index.tolist() == [0, 1, 2]
-    assert table.index.tolist() == ["a", "b", "b"]
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -154,25 +145,6 @@ def test_a_small_file_of_too_many_cells(tmp_path):
     assert "cells" in refusal(Readings.read, path)
 
 
-@pytest.mark.slow
-@seed(2)
-@settings(max_examples=150, deadline=None)
-@given(st.data())
-def test_any_damage_to_a_file_is_one_line(tmp_path_factory, data):
-    """It still is a sweep, or one line says that it is not."""
-    suffix = data.draw(st.sampled_from(["csv", "parquet"]))
-    path = tmp_path_factory.mktemp("damaged") / f"sweep.{suffix}"
-    Readings.of(FOUR, provenance={"events": {"snap_off": None}}).write(path)
-    damage(data, path, times=4)
-    try:
-        sweep = Readings.read(path)
-    except InputError as error:
-        assert "\n" not in str(error)
-    else:
-        assert np.isfinite(sweep.values("foot_x")).all()
-        assert repr(sweep)
-
-
 CELLS = st.one_of(st.floats(), st.integers(), st.booleans(), st.none(), st.text(max_size=5))
 COLUMNS = st.sampled_from([*FOUR, "phase", "status", "tip_angle"])
 
@@ -195,15 +167,6 @@ def test_shown_on_one_screen():
     assert "200 stations" in text and "free" in text
     page = Readings.of(FOUR, source="rig <b>$$")._repr_html_()
     assert "<table" in page and "&lt;b&gt;" in page
-
-
-def test_plot_draws_the_three_readings():
-    from matplotlib.figure import Figure
-
-    sweep = Readings.of({**FOUR, "moment_z": [0, np.nan, 0.4]}, source="rig <b>$$")
-    axes = sweep.plot(Figure().subplots(3))
-    np.testing.assert_array_equal(axes[0].lines[0].get_ydata(), FOUR["force_x"])
-    axes[0].figure.canvas.draw()
 
 
 def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):

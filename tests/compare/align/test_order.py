@@ -10,11 +10,12 @@ from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.align.order import in_order
 from compare.sense.noise import with_noise
+from tests.compare.synthetic import changed
 from tests.conftest import exact_sweep
 
 
 def counted_from(sweep: Readings, origin: float) -> Readings:
-    return replace(sweep, table=sweep.table.assign(foot_x=origin - sweep.values("foot_x")))
+    return changed(sweep, foot_x=origin - sweep.values("foot_x"))
 
 
 @pytest.mark.parametrize("origin", [pytest.param(0.0, marks=pytest.mark.slow), 0.7])
@@ -43,13 +44,10 @@ def test_reversed_rows_are_reversed(case_name):
 def test_what_neither_explains_is_taken_for_reversed_rows():
     exact = exact_sweep("parabola")
     values = np.abs(np.random.default_rng(1).normal(size=(200, 3)))
-    strange = exact.table.assign(
-        foot_x=-exact.values("foot_x"),
-        **dict(
-            zip(CLAMP_READINGS, values.T * np.sign(exact.values("moment_z").sum()), strict=True)
-        ),
-    )
-    assert in_order(exact, replace(exact, table=strange))[2].reversed
+    readings = values.T * np.sign(exact.values("moment_z").sum())
+    columns = dict(zip(CLAMP_READINGS, readings, strict=True))
+    strange = changed(exact, foot_x=-exact.values("foot_x"), **columns)
+    assert in_order(exact, strange)[2].reversed
 
 
 def test_what_both_explain_is_taken_for_reversed_rows():

@@ -163,14 +163,6 @@ def test_what_an_engine_wrote_is_taken_as_it_is(tmp_path):
     assert list(read_measured(tmp_path / "bare.csv").table["phase"]) == list(sweep.table["phase"])
 
 
-@pytest.mark.slow
-def test_a_million_rows(tmp_path):
-    foot = np.linspace(1, -1, 1_000_000)
-    path = tmp_path / "rig.csv"
-    pd.DataFrame({name: foot.round(7) for name in SENSED}).to_csv(path, index=False, sep=";")
-    assert len(read_measured(path, BEAM).table) > 900_000
-
-
 def test_clamp_and_friction_come_with_the_beam(tmp_path):
     """From the file that names the vibrissa; a later file overrides what readings record."""
     held = {"clamp_stiffness": 6.0, "friction": 0.25}

@@ -10,7 +10,7 @@ from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.readings import around_snap_off
 from compare.show.plane_page import plane_tiles
-from compare.show.report import summary_of, write_report
+from compare.show.report import summary_of
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page, written_page
 from tests.compare.synthetic import NOTHING
@@ -83,14 +83,6 @@ def test_page(pair):
     if found.snap_off.reference is not None:
         low, high = around_snap_off(found, "force_x").axes[0].get_xlim()
         assert low < high
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", ODD.values(), ids=ODD)
-def test_whole_reports(pair, tmp_path):
-    page = Page(write_report(compare(*pair()), tmp_path).read_text(encoding="utf-8"))
-    assert page.faults == []
-    assert len(page.all("svg")) >= 6
 
 
 def test_units_are_those_of_the_beam():

@@ -127,18 +127,8 @@ def test_the_command_says_where_it_loses_contacts(tmp_path):
     """By either, or both."""
     if installed("mujoco-mjx")[1] is not None:
         needs("mujoco-warp")
-    command = (
-        "inspect",
-        "parabola",
-        "--float32",
-        "--stations",
-        20,
-        "--segments",
-        20,
-        "--out",
-        "out",
-    )
-    done = vibrissa(*command, "--contact-stiffness", "1e5,1e9", cwd=tmp_path)
+    sweep = ("--stations", 20, "--segments", 20, "--contact-stiffness", "1e5,1e9")
+    done = vibrissa("inspect", "parabola", "--float32", *sweep, "--out", "out", cwd=tmp_path)
     assert done.returncode in (0, 1), done.stderr
     for name in evaluators():
         verdict = "loses no contact" if name.endswith("64 bits") else "loses contacts from"

@@ -52,21 +52,6 @@ def test_with_friction_it_sticks_and_slides_back_as_in_closed_form():
 
 
 @pytest.mark.slow
-def test_to_the_right_it_is_the_mirror_image():
-    body = CATENARY.profile
-    left = Case(profile=body, sweep=Sweep(12, stop=0.4))
-    ways = [
-        simulate_there_and_back(c, Motion(speed=0.2), SETTINGS) for c in (left, left.mirrored())
-    ]
-    for one, other in zip(*ways, strict=True):
-        assert other.values("foot_x") == pytest.approx(-one.values("foot_x"), abs=0)
-        assert other.values("force_x") == pytest.approx(-one.values("force_x"), abs=0)
-        assert other.values("force_y") == pytest.approx(one.values("force_y"), abs=0)
-        events = one.provenance["events"], other.provenance["events"]
-        assert {n: x and -x for n, x in events[0].items()} == events[1]
-
-
-@pytest.mark.slow
 def test_past_a_symmetric_object_it_comes_back_as_its_own_mirror_image():
     """It has let go, comes to the other side, and lets go there."""
     case = Case(profile=circle(0.2, (0, 0.5)), sweep=Sweep(40, 1.4, -1.4))

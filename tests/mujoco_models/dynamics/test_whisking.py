@@ -42,10 +42,3 @@ def test_the_slower_the_nearer_to_rest(case):
         np.testing.assert_allclose(moved.values("contact_x"), rest.values("contact_x"), atol=0.02)
     assert off[0].max() < 0.05
     assert (off[1] < off[0] / 2).all()
-
-
-def test_to_the_right_it_is_the_mirror_image():
-    motion = Motion(speed=0.5)
-    left, right = (simulate_motion(c, motion, SETTINGS) for c in (TURNS, TURNS.mirrored()))
-    for name, sign in ("force_x", -1), ("moment_z", -1), ("clamp_angle", -1), ("force_y", 1):
-        np.testing.assert_array_equal(sign * right.values(name), left.values(name))

@@ -47,6 +47,16 @@ def swept(beam):
     return case, settings, simulate_sweep(case, settings)
 
 
+def assert_same(found, expected, settings, end):
+    """All at rest, in the same states: out of balance by the tolerance, with levers of order L."""
+    assert (found.table["status"] == "ok").all()
+    for name in CLAMP_READINGS:
+        scale = 1 + np.abs(expected.values(name)).max()
+        error = np.abs(found.values(name) - expected.values(name))
+        assert error.max() < 10 * settings.tolerance * scale, name
+    assert abs(found.snap_off - expected.snap_off) < end
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("usual", available_beams(), indirect=True)
 @pytest.mark.parametrize("factor", [0.1, 10])
@@ -55,13 +65,7 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
     case, settings, expected = usual
     monkeypatch.setattr("mujoco_models.model.spec.add_options", changed(quantity, factor))
     found = simulate_sweep(case, settings)
-    assert (found.table["status"] == "ok").all()
-    # Both are out of balance by up to the tolerance; levers are of the order of L.
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        assert error.max() < 10 * settings.tolerance * scale, name
-    assert abs(found.snap_off - expected.snap_off) < 2e-5  # two of the smallest steps
+    assert_same(found, expected, settings, 2e-5)  # two of the smallest steps
 
 
 VARIED = {
@@ -88,20 +92,15 @@ VARIED = {
 FAST = ("stiffening_of_facets", "forecasts")
 
 
-def kind(i, constant, beam, side):
-    """Either side of every constant, and every constant with every beam; the rest is a trial."""
-    if (i + beam + side) % 2:
-        return pytest.mark.trial
-    return () if constant in FAST else pytest.mark.slow
-
-
+# Either side of every constant, and every constant with every beam.
 @pytest.mark.parametrize(
     ("usual", "constant", "side"),
     [
-        pytest.param(name, constant, side, marks=kind(i, constant, beam, side))
+        pytest.param(name, constant, side, marks=() if constant in FAST else pytest.mark.slow)
         for beam, name in enumerate(available_beams())
         for i, constant in enumerate(VARIED)
         for side in (0, 1)
+        if (i + beam + side) % 2 == 0
     ],
     indirect=["usual"],
 )
@@ -110,14 +109,8 @@ def test_no_constant_of_the_way_shows(usual, constant, side):
     case, settings, expected = usual
     varied = replace(Numerics(), **{constant: VARIED[constant][side]})
     found = run_sweep(case, settings, numerics=varied)
-    assert (found.table["status"] == "ok").all()
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        # Two states out of balance by up to the tolerance, as above.
-        assert error.max() < 10 * settings.tolerance * scale, name
     # Observed: 6e-5 by the stiffening, 1.3e-5 by the smallest step, 0 by all others.
-    assert abs(found.snap_off - expected.snap_off) < 1e-4
+    assert_same(found, expected, settings, 1e-4)
 
 
 @pytest.mark.slow
@@ -127,12 +120,7 @@ def test_how_convex_the_step_is_past_a_smooth_contour_does_not_show(stiffening):
     case, settings = named_case("parabola"), Settings(obstacle="primitive")
     expected = simulated_sweep("parabola", settings)
     found = run_sweep(case, settings, numerics=Numerics(stiffening=stiffening))
-    assert (found.table["status"] == "ok").all()
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        assert error.max() < 10 * settings.tolerance * scale, name
-    assert abs(found.snap_off - expected.snap_off) < 1e-4  # observed 4e-5
+    assert_same(found, expected, settings, 1e-4)  # observed 4e-5
 
 
 @pytest.mark.parametrize("contact_stiffness", [1e4, 1e5, 1e7])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from analytic import Beam, Case, Sweep, catenary, circle, parabola, solve_sweep
+from analytic import Beam, Case, Sweep, circle, solve_sweep
 from analytic.problem.errors import InputError
 from compare import compare
 from mujoco_models import Motion, Settings, available_beams, simulate_motion, simulate_sweep
@@ -10,10 +10,8 @@ from mujoco_models.model.parts import parts_at_rest
 
 ROUND = circle(1.0, lowest=(0.0, 0.4))
 CASES = [
-    Case(profile=parabola(0.5, 0.5), sweep=Sweep(60), weight=(0.5, 0.0)),
     Case(profile=ROUND, sweep=Sweep(60), weight=(0.0, -2.0)),
     Case(profile=ROUND, sweep=Sweep(60), weight=(0.0, 3.0)),
-    Case(profile=catenary(0.5, -0.8), sweep=Sweep(60), weight=(0.0, -1.0)),
     Case(
         Beam(natural_curvature=-0.3),
         ROUND,
