@@ -28,8 +28,7 @@ from mujoco_models import Settings, simulate_sweep
 pytestmark = pytest.mark.usefixtures("in_turn")
 
 CASE = named_case("parabola")
-LIMITS = ("catenary", "two-circles")  # of these limits are looked at without being asked
-GRID = Sweep(40, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
+GRID = Sweep(80, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
 known = cache(variations)
 swept = cache(simulate_sweep)  # refined, one budget's base is often another's
 
@@ -78,13 +77,7 @@ def test_named_cases_are_explained(case, segments):
         assert unexplained.rms <= np.hypot(unexplained.uncertainty, UNRESOLVED), reading
 
 
-@pytest.mark.parametrize(
-    "case_name",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in LIMITS else pytest.mark.trial)
-        for name in CASE_NAMES
-    ],
-)
+@pytest.mark.slow
 def test_the_limit_is_the_exact_solution_on_the_same_polygon(case):
     """With 12,800 facets; observed at most 8.3e-5, and 1.05e-4 in the force_x of two-circles.
 
