@@ -145,7 +145,7 @@ test-engines:    ## the tests of the other engines, each in an environment of it
 	    || { echo "$$extra: cannot be installed here"; continue; }; \
 	  echo "$$extra alone:"; \
 	  $$alone/bin/python -m pytest --quiet $(PARALLEL) tests/engines/*/ tests/engines/test_twins.py \
-	    tests/engines/test_real_split.py $(ARGS); done
+	    tests/engines/test_real_split.py tests/engines/test_refused.py $(ARGS); done
 
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Beam, Case, InputError, circle, named_case, polygon
+from analytic import CLAMP_READINGS, Beam, Case, circle
 from engines import find_engine
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.obstacles.prism import Prism
-from tests.engines.needs import needs
+from tests.engines.needs import needs, short
 
 SMOOTH = Settings(obstacle="primitive")
 
@@ -36,11 +36,6 @@ def apart(name: str, case: Case, settings: Settings) -> tuple[dict[str, float], 
     }
     assert np.nanmax(twin.values("discrepancy")) < 1e-6  # EI/L^2, EI/L
     return found, (twin.snap_off - mujoco.snap_off) / case.beam.length
-
-
-def short(of: str, stations: int) -> Case:
-    case = named_case(of)
-    return replace(case, sweep=replace(case.sweep, stations=stations))
 
 
 def equals_mujoco(name: str, case: Case, segments: int) -> None:
@@ -114,23 +109,3 @@ def test_on_a_mesh_they_differ_by_mujocos_normals(name):
     readings, snap_off = apart(name, case, settings)
     assert max(readings.values()) < 10 * turned
     assert abs(snap_off) < 1e-4
-
-
-@pytest.mark.parametrize(
-    ("case", "settings", "says"),
-    [
-        (named_case("catenary"), Settings(beam="rod"), "beam for"),
-        (named_case("catenary"), Settings(planar=False), "out of the plane"),
-        (
-            Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])),
-            Settings(),
-            "with sharp corners",
-        ),
-        (Case(profile=circle(0.003, (0.0, 0.5))), Settings(), "smallest radius of curvature"),
-        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), Settings(), "cannot collide a line"),
-        (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
-    ],
-)
-def test_what_a_twin_has_not_is_a_line(name, case, settings, says):
-    with pytest.raises(InputError, match=says):
-        find_engine(name).sweep(case, settings)

@@ -131,19 +131,6 @@ def test_a_fit_that_is_bad_because_forces_are_swapped_says_so(folder, tmp_path):
     done.refused("likely force_x and force_y, swapped")
 
 
-@pytest.mark.slow
-def test_several_files_are_passes(folder, tmp_path):
-    given = ("--noise", "0.01", "--fit", "clamp_stiffness", "--out", "found")
-    both = (folder / "swept.parquet", folder / "rig.csv")
-    done = vibrissa("calibrate", *both, folder / "object.toml", *given, cwd=tmp_path)
-    done.ended(0, "2 passes say the same")
-    written = json.loads((tmp_path / "found" / "calibration.json").read_text())
-    assert written["passes"]["degrees"] == 1
-    done = vibrissa("reconstruct", *both, "--out", "points", cwd=tmp_path)
-    assert "2 passes: at one foot position" in done.stdout
-    assert "pass" in (tmp_path / "points" / "points.csv").read_text().splitlines()[0]
-
-
 def test_a_folder_that_is_none_of_passes_is_one_line(folder, tmp_path):
     for words in (("calibrate", folder, folder / "object.toml"), ("reconstruct", folder)):
         vibrissa(*words, cwd=tmp_path).refused("a folder that `rig` wrote")

@@ -31,23 +31,6 @@ def test_run_writes_what_it_promises(tmp_path):
     vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path).ended(0)
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("in_turn", "undrawn")
-def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
-    (tmp_path / "case.toml").write_text(CASE)
-    done = vibrissa("run", "case.toml", "--budget", cwd=tmp_path)
-    done.ended(1, "allowed", "The largest part is discretisation")
-    written = tmp_path / "results" / "small object"
-    found = json.loads((written / "budget.json").read_text())
-    assert found["blame"] == "discretisation"
-    assert list(found["convergence"]) == ["10", "20", "40"]
-    assert 'id="budget"' in (written / "report.html").read_text()
-    done = vibrissa("report", "results", cwd=tmp_path).ended(0)
-    page = (tmp_path / "results" / "report.html").read_text()
-    assert '<th scope="row">small object</th><td class="text">chain</td><td>10</td>' in page
-    assert vibrissa("report", "nowhere", cwd=tmp_path).returncode == 2
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

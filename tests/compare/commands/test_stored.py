@@ -32,6 +32,7 @@ def test_the_report_of_a_run_again(tmp_path):
     words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
     done = vibrissa("run", *words, "--budget", "--film", cwd=tmp_path)
     reported_again(done, tmp_path / "out", "report.html", "readings.png")
+    assert "The largest part is discretisation" in done.stdout
     stored = read_run(tmp_path / "out")
     assert stored.tolerances.special["force_x.tip.max"].reason == "for the controller"
     assert stored.budget.convergence.keys() == {8, 16, 32}
@@ -91,6 +92,7 @@ def test_rigs_side_by_side(tmp_path, sweep):
     ]
     assert np.max(rms) < 1e-12
     assert done.returncode in (0, 1)
+    assert (tmp_path / "out" / "side-by-side.png").stat().st_size > 10_000
 
 
 @pytest.mark.slow

@@ -194,7 +194,7 @@ def test_a_clamp_that_turns_is_suspected():
 @pytest.mark.slow
 def test_a_shifted_stage_is_suspected():
     case = replace(CASE, sweep=GRID)
-    wrong = replace(case, sweep=Sweep(80, GRID.start + 0.005, GRID.stop + 0.005))
+    wrong = replace(case, sweep=replace(GRID, start=GRID.start + 0.005, stop=GRID.stop + 0.005))
     shifted = {
         name: Readings(
             simulate_sweep(wrong, changed).table.assign(foot_x=case.foot_x),

@@ -30,13 +30,6 @@ def rig(exact) -> pd.DataFrame:
 COLUMNS = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
 
 
-def test_units_without_a_vibrissa(rig):
-    for columns in (COLUMNS, COLUMNS[:1]):
-        with pytest.raises(InputError, match=r"vibrissa = none given: .* --beam FILE"):
-            read_measured(rig, columns=columns)
-    assert read_measured(rig, BEAM, COLUMNS).beam == BEAM
-
-
 def noisy(sweep: Readings, noise: float) -> pd.DataFrame:
     table = sweep.table[list(SENSED)].copy()
     scatter = np.random.default_rng(0).standard_normal(table.shape)

@@ -101,14 +101,3 @@ def test_nothing_is_said_of_nothing(made):
     assert not any("nan" in str(block).lower() for block in blocks)
     assert not any("relative to the largest" in getattr(block, "caption", "") for block in blocks)
     assert not any("disagreement" in tile.name for tile in plane_tiles(found))
-
-
-def test_the_tile_of_the_largest_single_difference_names_its_reading_and_place():
-    exact = sweeps.exact("catenary")
-    at = 20
-    moment = exact.values("moment_z").copy()
-    moment[at] += 0.4 * np.abs(moment).max()
-    found = compare(exact, replace(exact, table=exact.table.assign(moment_z=moment)))
-    (tile,) = (one for one in plane_tiles(found) if one.name == "largest single difference")
-    assert tile.value == "4.0e-1"
-    assert tile.note.startswith("moment_z") and f"{exact.values('foot_x')[at]:.4g}"[:5] in tile.note
