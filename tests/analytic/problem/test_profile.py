@@ -44,7 +44,7 @@ IN_STEP = (64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2)  # with even
 
 
 @seed(11)
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     st.floats(0.1, 3),
     st.floats(0, 0.9) | st.floats(1.05, 3),
@@ -62,7 +62,7 @@ def test_planted_waves_are_found(radius, depth, waves, phase):
 
 
 @seed(13)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     st.sampled_from(["catenary", "parabola", "circle", "ellipse", "two-circles"]),
     st.floats(1e-9, 1e9),

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 from analytic import Beam, InputError, Readings, named_case, solve_sweep
 from tests.analytic.problem.given import refusal
@@ -150,7 +151,7 @@ COLUMNS = st.sampled_from([*FOUR, "phase", "status", "tip_angle"])
 
 
 @seed(3)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.dictionaries(COLUMNS, st.lists(CELLS, max_size=4)))
 def test_any_columns_are_readings_or_one_line(columns):
     try:
@@ -167,6 +168,13 @@ def test_shown_on_one_screen():
     assert "200 stations" in text and "free" in text
     page = Readings.of(FOUR, source="rig <b>$$")._repr_html_()
     assert "<table" in page and "&lt;b&gt;" in page
+
+
+def test_plot_draws_the_three_readings():
+    sweep = Readings.of({**FOUR, "moment_z": [0, np.nan, 0.4]}, source="rig <b>$$")
+    axes = sweep.plot(Figure().subplots(3))
+    np.testing.assert_array_equal(axes[0].lines[0].get_ydata(), FOUR["force_x"])
+    axes[0].figure.canvas.draw()
 
 
 def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
