@@ -238,6 +238,14 @@ def test_beam_is_a_value():
     assert Case(one, OBJECT).digest == Case(other, OBJECT).digest != Case(profile=OBJECT).digest
 
 
+def test_table_goes_through_its_points_and_not_beyond():
+    table = [(0, 1.0), (0.3, 0.9), (0.5, 0.2), (1, 0.1)]
+    beam = Beam(flexural_rigidity=table)
+    s, values = np.array(table).T
+    np.testing.assert_allclose(beam.rigidity_at(s), values, rtol=1e-14)
+    assert (np.diff(beam.rigidity_at(S)) < 0).all()
+
+
 @pytest.mark.parametrize("same", [lambda s: 2.0, lambda s: 2.0 + 0 * s, [(0, 2.0), (1, 2.0)]])
 def test_what_does_not_vary_is_a_number(same):
     assert Beam(flexural_rigidity=same) == Beam(flexural_rigidity=2.0)
