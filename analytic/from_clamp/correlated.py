@@ -32,7 +32,7 @@ _SURELY = (
     0.95  # probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it
 )
 # Memories; of three channels so many show the noise's size to 0.2, and 1.5 times that is clear.
-_TELLING = 10.0
+_CLEAR = 10.0
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
@@ -62,7 +62,7 @@ class NoiseFound:
     def judged_by(self, rests: int | None) -> bool:
         """Whether so many stations off the contact show its size; None if it is known without."""
         forgotten = np.where(self.remembers & ~self.lasts, self.memory, 0.0)
-        return rests is None or bool(rests >= _TELLING * forgotten.max())
+        return rests is None or bool(rests >= _CLEAR * forgotten.max())
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
         known = np.where(self.lasts | ~self.remembers, 0.0, self.memory)
