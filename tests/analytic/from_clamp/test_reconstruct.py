@@ -121,7 +121,7 @@ NUMBERS = st.floats(-1e6, 1e6) | st.floats(allow_infinity=False)
 
 
 @seed(31)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(NUMBERS, NUMBERS, NUMBERS), min_size=2, max_size=8))
 def test_any_numbers_give_a_contact_on_the_vibrissa_or_a_reason(rows):
     columns = dict(zip(("force_x", "force_y", "moment_z"), zip(*rows, strict=True), strict=True))
