@@ -45,8 +45,7 @@ from analytic import (
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.layout import OF_CURVATURE, bead_spacing
 from mujoco_models.obstacles.kinds import place
-from tests.fuzz.contours import from_support
-from tests.fuzz.draws import log_uniform
+from tests.fuzz.contours import from_support, log_uniform
 
 USUAL = ("round", "needle", "small", "smooth", "polygon", "mesh")
 KINDS = (*USUAL, "mixed")
@@ -87,12 +86,16 @@ class Outcome:
     flags: tuple[str, ...]
 
 
-def trial(seed: int, folder: Path, kind: str | None = None, wide: bool = False) -> Trial:
+def trial(
+    seed: int, folder: Path, kind: str | None = None, wide: bool = False, skip: int = 0
+) -> Trial:
     """The trial of this seed; a mesh's file is put into `folder`.
 
-    A wide one may have three stations, five segments and an object next to the clamp.
+    A wide one may have three stations, five segments and an object next to the clamp. So many
+    numbers of the seed are skipped.
     """
     draw = np.random.default_rng(seed)
+    draw.bit_generator.advance(skip)
     while True:
         chosen = kind or str(draw.choice(KINDS if wide else USUAL))
         try:

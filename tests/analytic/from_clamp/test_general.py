@@ -126,18 +126,6 @@ def test_in_other_units_and_to_the_right():
     assert_exact(solve_sweep(case))
 
 
-def test_the_moment_says_nothing_where_the_vibrissa_is_square_to_the_force():
-    """A vibrissa curved towards the object passes that place: the contact is its tip all along."""
-    case = Case(Beam(natural_curvature=1.2), circle(1.0, lowest=(0, 0.4)), Sweep(2000))
-    readings = solve_sweep(case)
-    tip = (readings.table["phase"] == "tip").to_numpy() & with_readings(readings)
-    square = readings.values("tip_angle") - np.arctan2(
-        -readings.values("force_x"), readings.values("force_y")
-    )
-    assert np.abs(square[tip] - np.pi / 2).min() < 1e-3
-    assert missed(reconstruct(readings), readings).max() < 1e-12
-
-
 def test_a_reader_who_knows_of_no_friction_finds_the_points_but_not_the_angles():
     """Exactly so for a thin vibrissa: the force is as dead as without friction."""
     readings = solve_sweep(replace(REAL, beam=Beam(radius=0.0), clamp_stiffness=math.inf))

@@ -110,6 +110,10 @@ def test_what_is_not_opened(tmp_path):
         (tmp_path / name).touch()
         assert "*.stl" in refusal(mesh_section, tmp_path / name)
     assert "check the path" in refusal(mesh_section, tmp_path / "missing.stl")
+    (tmp_path / "cut.ply").write_bytes(trimesh.creation.box().export(file_type="ply")[:300])
+    assert "a readable STL, OBJ" in refusal(mesh_section, tmp_path / "cut.ply")
+    trimesh.creation.box().export(tmp_path / "box.stl")
+    assert "move the plane" in refusal(mesh_section, tmp_path / "box.stl", height=0.6)
 
 
 BODIES = {

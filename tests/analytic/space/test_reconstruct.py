@@ -18,6 +18,7 @@ from analytic.space import (
     wrench_complaint,
     write_ply,
 )
+from analytic.space.from_clamp.cloud import Cloud
 from analytic.space.from_clamp.reconstruct import component_noise
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 from tests.analytic.noisy import noisy
@@ -139,6 +140,12 @@ def test_the_clamp_s_action_reversed_is_hollow(share):
     found = reconstruct_space(changed(right, **(-right.table[names])), noise)
     assert found["contact_x"].notna().sum() > 25
     assert "hollow surface" in wrench_complaint(found)
+
+
+def test_a_point_deep_inside_is_as_far_off_as_it_is_deep():
+    """Along its normal, whichever way that is."""
+    deep = Cloud(np.array([[0.0, 2.2 - 1.4 + 1.0, 0.0]]), np.array([[0.0, -1.0, 0.0]]))
+    assert misses(deep, BODY, 1.0).distances[0] == pytest.approx(1.0, abs=1e-9)
 
 
 def test_a_frame_is_wrong_beyond_noise(readings):

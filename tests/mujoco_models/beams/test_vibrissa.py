@@ -21,7 +21,6 @@ VIBRISSAE = {
     "to the left": (Beam(natural_curvature=0.5), math.inf),
     "to the right": (Beam(natural_curvature=-0.5), math.inf),
     "on a spring": (Beam(), 8.0),
-    # 2 m long and twice as stiff: a natural curvature of 0.4/L, a clamp of 5 EI/L.
     "cone": (Beam(tip_radius=0.002), math.inf),
     "graded": (Beam(flexural_rigidity=lambda s: 1 - 0.5 * s**2), math.inf),
     "ever more curved": (Beam(natural_curvature=lambda s: -0.8 * s), math.inf),
@@ -30,7 +29,6 @@ VIBRISSAE = {
         Beam(2.0, 2.0, 0.01, natural_curvature=lambda s: 0.1 * s, tip_radius=0.005),
         5.0,
     ),
-    "all, in units": (Beam(2.0, 2.0, 0.01, natural_curvature=0.2), 5.0),
 }
 
 

@@ -153,6 +153,13 @@ def test_limits_of_stiction():
     np.testing.assert_allclose(near["moment_z"], far["moment_z"], atol=1e-6)
 
 
+def test_to_the_right_it_is_the_mirror_image():
+    one, other = turn_back(ROUGH, 0.1, 50), turn_back(ROUGH.mirrored(), -0.1, 50)
+    np.testing.assert_allclose(other["force_x"], -one["force_x"], atol=1e-9)
+    np.testing.assert_allclose(other["friction_angle"], -one["friction_angle"], atol=1e-9)
+    assert (one["sliding"] == other["sliding"]).all()
+
+
 def test_shortly_before_the_snap_off_what_is_not_solved_says_so():
     end = find_events(ROUGH.profile, friction=0.3).snap_off.foot_x
     table = turn_back(ROUGH, end + 0.05, 300)

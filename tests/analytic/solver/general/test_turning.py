@@ -131,6 +131,14 @@ def test_a_path_along_the_line_is_a_sweep(friction):
     assert case.foot_x[0] - path.snap_off == pytest.approx(sweep.snap_off, abs=1e-12)
 
 
+def test_a_path_that_lifts_the_foot_is_a_sweep_past_a_lower_object():
+    x = np.linspace(2.8, -2.7, 200)
+    lifted = solve_sweep(Case(sweep=ClampPath(x, np.full(200, 0.05), np.zeros(200))))
+    low = solve_sweep(Case(profile=catenary(0.5, -0.85), sweep=Sweep(200, x[0], x[-1])))
+    np.testing.assert_allclose(lifted.values("moment_z"), low.values("moment_z"), atol=1e-12)
+    np.testing.assert_allclose(lifted.values("contact_y"), low.values("contact_y") + 0.05)
+
+
 def test_out_and_back_lets_go_where_it_touched():
     x = np.concatenate([np.linspace(2.6, 0.8, 60), np.linspace(0.8, 2.6, 60)[1:]])
     found = solve_sweep(Case(sweep=ClampPath(x, 0 * x, 0 * x)))

@@ -74,7 +74,7 @@ def test_stations_balance(i):
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(
     varies=st.booleans(),
     ratio=st.floats(0.05, 1),

@@ -149,7 +149,7 @@ def test_a_certificate_shows_a_wrong_weight():
 
 
 @pytest.mark.slow
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     st.sampled_from(list(PROFILES.values())),
     st.floats(0, 6),
