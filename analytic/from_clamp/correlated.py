@@ -31,9 +31,8 @@ _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
-_SURELY = (
-    0.95  # probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it
-)
+# Probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it.
+_SURELY = 0.95
 # Memories; of three channels so many show the noise's size to 0.2, and 1.5 times that is clear.
 _SHOWING = 10.0
 _REMEMBERED = 0.3  # correlation from station to station that is said

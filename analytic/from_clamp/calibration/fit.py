@@ -9,15 +9,15 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import OFFSET, Sought, Unknown
-from analytic.from_clamp.object.families import Family
+from analytic.from_clamp.calibration.unknowns import OFFSET, Family, Sought, Unknown
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.problem.errors import InputError
-from analytic.solver.columns import Units, to_columns
-from analytic.solver.general.states import Vibrissa, rates_at
+from analytic.solver.general.balance import rates_at
+from analytic.solver.general.columns import Units, to_columns
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_beside
 from analytic.solver.general.sweep import solve
 

@@ -14,11 +14,11 @@ from analytic.from_clamp.calibration.best import (
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
-from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Unknown
+from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Family, Unknown
 from analytic.from_clamp.correlated import Estimated
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
-from analytic.from_clamp.object.families import Family, families
+from analytic.from_clamp.object.families import families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency, left_by_noise
 from analytic.from_clamp.reconstruct import reconstruct, require_beam
 from analytic.problem.arrays import Floats
