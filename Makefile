@@ -78,10 +78,10 @@ sweeps: develop  ## random sweeps in MuJoCo against the closed form; ARGS="N [SE
 models: develop  ## random foreign models, inspected and fixed; ARGS="N [SEED [SWEPT]]"
 	$(BIN)/python -m tests.fuzz.models $(or $(ARGS),200)
 
-bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping engines study", or million
+bench: develop   ## speed, side by side on one core; ARGS="ratios analytic mujoco stepping engines"
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
-net: develop     ## some 280 sweeps of this checkout, held against those that another one made in OLD
+net: develop     ## some 270 sweeps of this checkout, held against those that another one made in OLD
 	rm -rf results/net
 	$(BIN)/python -m tests.net make results/net
 	$(BIN)/python -m tests.net compare $(or $(OLD),$(error OLD=DIR is missing)) results/net
@@ -138,14 +138,14 @@ install-engines: .venv-engines/installed   ## build .venv-engines with all engin
 # An extra may lean on what another one brings: each is alone, in a copy (of links) of what all need.
 test-engines:    ## the tests of the other engines, each in an environment of its own; ARGS="-m slow" for more
 	$(PYTHON) -m venv --clear .venv-alone/base
-	.venv-alone/base/bin/python -m pip install --quiet --disable-pip-version-check --editable . pytest pytest-xdist
+	.venv-alone/base/bin/python -m pip install --quiet --disable-pip-version-check --compile --editable . pytest pytest-xdist  # compiled once, for all copies
 	set -e; for extra in $(EXTRAS); do \
 	  alone=.venv-alone/$$extra; rm -rf $$alone; cp -al .venv-alone/base $$alone; \
 	  $$alone/bin/python -m pip install --quiet --disable-pip-version-check --editable ".[$$extra]" \
 	    || { echo "$$extra: cannot be installed here"; continue; }; \
 	  echo "$$extra alone:"; \
 	  $$alone/bin/python -m pytest --quiet $(PARALLEL) tests/engines/*/ tests/engines/test_twins.py \
-	    tests/engines/test_real_split.py $(ARGS); done
+	    tests/engines/test_real_split.py tests/engines/test_refused.py $(ARGS); done
 
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \

@@ -12,11 +12,11 @@ from .read.job import SpaceJob as SpaceJob
 from .read.rig import read_measured as read_measured
 from .read.rig import read_sweeps as read_sweeps
 from .read.space_readings import read_space as read_space
-from .report import Report as Report
-from .report import write_report as write_report
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .simulate.budgets import measure_budget as measure_budget
+from .study.report import Report as Report
+from .study.report import write_report as write_report
 from .testing.gates import assert_agreement as assert_agreement
 from .testing.gates import assert_sound as assert_sound
 from .validate.stated import Input as Input

@@ -96,19 +96,12 @@ def test_a_tilted_clamp_is_the_straight_vibrissas():
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: Beam(natural_curvature=float("nan")), "beam.natural_curvature = nan"),
         (lambda: Beam(2.0, natural_curvature=1.6), "foot line"),
         (lambda: Case(Beam(natural_curvature=2.0), OBJECT), "at most 1.5708 rad"),
         (lambda: Case(Beam(natural_curvature=1.5), circle(1, lowest=(0, 0.9))), "tip of the vibri"),
         (lambda: Case(Beam(natural_curvature=0.3), circle(0.2, lowest=(0, 0.5))), "upper side"),
-        (
-            lambda: Case(profile=OBJECT, friction=-0.1),
-            "friction = -0.1: must be a finite number between 0 and 1",
-        ),
-        (lambda: Case(profile=OBJECT, friction="much"), "friction = much"),
         (lambda: Case(profile=OBJECT, clamp_stiffness=0.0), "clamp_stiffness = 0.0"),
         (lambda: Case(profile=OBJECT, clamp_stiffness=float("nan")), "clamp_stiffness = nan"),
-        (lambda: Case(profile=OBJECT, clamp_stiffness=True), "clamp_stiffness = True"),
         (lambda: solve_contact(OBJECT, 0.1, friction=1.5), "between -1 and 1"),
         (lambda: find_events(OBJECT, clamp_stiffness=-1.0), "clamp_stiffness = -1.0"),
     ],

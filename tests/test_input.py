@@ -7,64 +7,28 @@ import pandas as pd
 import pytest
 
 import analytic
-import compare as compare_package
+import compare as compared
 import mujoco_models
 from analytic import (
     Beam,
     Case,
     InputError,
-    Profile,
     Readings,
     Sweep,
     catenary,
-    certify,
     circle,
-    deflected_shapes,
-    find_events,
-    find_many_events,
-    mesh_section,
     named_case,
     parabola,
-    reconstruct,
-    relative_noise,
     solve_contact,
     solve_sweep,
+    space,
 )
-from analytic.space import (
-    Cloud,
-    convex_band,
-    deflected_rods,
-    fit_body,
-    misses,
-    point_cloud,
-    polyhedron,
-    reconstruct_space,
-    solve_space,
-    sphere,
-)
-from compare import (
-    Input,
-    Uncertainties,
-    classify,
-    compare,
-    read_measured,
-    separate_lag,
-    validate,
-    write_report,
-)
-from mujoco_models import (
-    OwnModel,
-    Settings,
-    from_solref,
-    inspect_model,
-    simulate_model,
-    simulate_motion,
-    simulate_sweep,
-    to_solref,
-)
+from compare import Input, Uncertainties, compare, validate
+from mujoco_models import OwnModel, Settings, from_solref, inspect_model, simulate_sweep
 
 EXACT = solve_sweep(Case())
-BALL = sphere(1.0, centre=(0, 1.4, 0))
+CLOUD = space.Cloud(np.zeros((1, 3)), np.eye(3)[:1])
+BALL = space.sphere(1.0, centre=(0, 1.4, 0))
 
 
 @pytest.mark.parametrize(
@@ -96,36 +60,36 @@ BALL = sphere(1.0, centre=(0, 1.4, 0))
         (lambda: Settings(contact_stiffness=-1), "mujoco.contact_stiffness = -1"),
         (lambda: Settings(corner_radius=0.0), "mujoco.corner_radius = 0.0"),
         (lambda: Settings(beam="rod", springs="arc"), "mujoco.springs = 'arc'"),
-        (lambda: simulate_model(Case(), "a.xml"), "as OwnModel('my_whisker.xml')"),
-        (lambda: simulate_motion(Case(), Settings()), "motion = a Settings"),
+        (lambda: mujoco_models.simulate_model(Case(), "a.xml"), "as OwnModel('my_whisker.xml')"),
+        (lambda: mujoco_models.simulate_motion(Case(), Settings()), "motion = a Settings"),
         (lambda: inspect_model("sound-chian"), "did you mean sound-chain?"),
         (lambda: OwnModel("sound-chain", contact="our"), "did you mean ours?"),
         (lambda: OwnModel("sound-chain", damping=-1), "model.damping = -1"),
         (lambda: compare(EXACT, EXACT).validated(Case(), {"length": 1}), "stated = a dict"),
         (lambda: inspect_model(3), "model = a int"),
-        (lambda: certify(Case()), "readings = a Case"),
-        (lambda: classify(Case()), "readings = a Case"),
-        (lambda: deflected_shapes(Case()), "readings = a Case"),
-        (lambda: polyhedron(np.zeros((2, 3, 4))), "body.points"),
-        (lambda: polyhedron([0.0, 1.0]), "must be points (x, y, z)"),
-        (lambda: fit_body([]), "readings = none"),
-        (lambda: convex_band([]), "readings = none"),
-        (lambda: point_cloud(EXACT), "found = a Readings"),
-        (lambda: point_cloud(EXACT.table), "found = without contacts and normals"),
-        (lambda: misses(BALL, BALL, 1.0), "cloud = a Ellipsoid"),
-        (lambda: misses(Cloud(np.zeros((1, 3)), np.eye(3)[:1]), BALL, -1.0), "length = -1"),
-        (lambda: deflected_rods(EXACT), "readings = a Readings: must be a SpatialReadings"),
-        (lambda: relative_noise(0.01, EXACT), "readings = a float"),
-        (lambda: find_many_events([], [Beam()]), "beams = 1 of 0 profiles"),
+        (lambda: analytic.certify(Case()), "readings = a Case"),
+        (lambda: compared.classify(Case()), "readings = a Case"),
+        (lambda: analytic.deflected_shapes(Case()), "readings = a Case"),
+        (lambda: space.polyhedron(np.zeros((2, 3, 4))), "body.points"),
+        (lambda: space.polyhedron([0.0, 1.0]), "must be points (x, y, z)"),
+        (lambda: space.fit_body([]), "readings = none"),
+        (lambda: space.convex_band([]), "readings = none"),
+        (lambda: space.point_cloud(EXACT), "found = a Readings"),
+        (lambda: space.point_cloud(EXACT.table), "found = without contacts and normals"),
+        (lambda: space.misses(BALL, BALL, 1.0), "cloud = a Ellipsoid"),
+        (lambda: space.misses(CLOUD, BALL, -1.0), "length = -1"),
+        (lambda: space.deflected_rods(EXACT), "readings = a Readings: must be a SpatialReadings"),
+        (lambda: analytic.relative_noise(0.01, EXACT), "readings = a float"),
+        (lambda: analytic.find_many_events([], [Beam()]), "beams = 1 of 0 profiles"),
         (lambda: from_solref((0.02, 1), (0.9, 0.95, 1e-3), -1), "inverse_mass = -1"),
         (lambda: from_solref((0.02, 1), (0.9, 0.95, 1e-3), 1, depth=-1e-3), "depth = -0.001"),
         (lambda: from_solref((0.02, 1), (0.9,), 1), "solimp = (0.9,)"),
-        (lambda: to_solref("100", 1, 1), "stiffness = 100"),
-        (lambda: solve_space(Case()), "case = a Case: must be a SpatialCase"),
-        (lambda: reconstruct_space(Case()), "readings = a Case: must be a SpatialReadings"),
-        (lambda: separate_lag(1, 2), "left = a int: must be a Offset; as compare("),
-        (lambda: write_report(1, 2), "folder = a int: must be a path"),
-        (lambda: write_report("nowhere"), "DIR = nowhere"),
+        (lambda: mujoco_models.to_solref("100", 1, 1), "stiffness = 100"),
+        (lambda: space.solve_space(Case()), "case = a Case: must be a SpatialCase"),
+        (lambda: space.reconstruct_space(Case()), "readings = a Case: must be a SpatialReadings"),
+        (lambda: compared.separate_lag(1, 2), "left = a int: must be a Offset; as compare("),
+        (lambda: compared.write_report(1, 2), "folder = a int: must be a path"),
+        (lambda: compared.write_report("nowhere"), "DIR = nowhere"),
         (lambda: validate(1, 2, 3), "found = a int"),
         (
             lambda: validate(compare(EXACT, EXACT), Case(), Uncertainties(), simulation="data"),
@@ -152,7 +116,7 @@ def test_values(make, said):
     ("of", "name", "said"),
     [
         (analytic, "solve_swep", "analytic has no 'solve_swep'; did you mean solve_sweep?"),
-        (compare_package, "measure_budgt", "did you mean measure_budget?"),
+        (compared, "measure_budgt", "did you mean measure_budget?"),
         (mujoco_models, "zzz", "dir(mujoco_models) lists what it has"),
         (EXACT, "force_x", "take table['force_x']"),
         (EXACT, "plt", "did you mean plot?"),
@@ -165,13 +129,13 @@ def test_names_that_are_nearly_right(of, name, said):
 
 def test_profiles_that_are_not_convex():
     with pytest.raises(InputError, match=r"chord between alpha = .* strictly convex"):
-        Profile(xi=lambda a: np.sin(a), eta=lambda a: np.cos(a), alpha_range=(-1, 1))
+        analytic.Profile(xi=lambda a: np.sin(a), eta=lambda a: np.cos(a), alpha_range=(-1, 1))
     with pytest.raises(InputError, match="not finite at alpha = "):
-        Profile(xi=lambda a: 1 / (a - a), eta=lambda a: a * np.nan, alpha_range=(-1, 1))
+        analytic.Profile(xi=lambda a: 1 / (a - a), eta=lambda a: a * np.nan, alpha_range=(-1, 1))
     with pytest.raises(InputError, match="alpha_range"):
-        Profile(xi=np.sin, eta=np.cos, alpha_range=(1, -1))
+        analytic.Profile(xi=np.sin, eta=np.cos, alpha_range=(1, -1))
     with pytest.raises(InputError, match="same shape"):
-        Profile(xi=lambda a: 1.0, eta=lambda a: a, alpha_range=(-1, 1))
+        analytic.Profile(xi=lambda a: 1.0, eta=lambda a: a, alpha_range=(-1, 1))
 
 
 def test_readings_that_are_none(tmp_path):
@@ -212,19 +176,19 @@ def test_readings_that_cannot_be_compared():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: find_events(named_case("catenary")), "or a case's profile"),
+        (lambda: analytic.find_events(named_case("catenary")), "or a case's profile"),
         (lambda: solve_contact(None, [0.1]), "profile = a NoneType"),
         (lambda: solve_contact(catenary(0.5, -0.8), "x"), "alpha = 'x'"),
         (lambda: solve_contact(catenary(0.5, -0.8), [0.1], 1.0), "beam = a float"),
         (lambda: solve_sweep("catenary"), "case = 'catenary': must be a Case"),
         (lambda: simulate_sweep(named_case("catenary"), {"segments": 3}), "settings = a dict"),
-        (lambda: reconstruct(pd.DataFrame()), "readings = a DataFrame"),
-        (lambda: relative_noise(pd.DataFrame({"foot_x": [1]}), 0.01), "readings = a DataFrame"),
+        (lambda: analytic.reconstruct(pd.DataFrame()), "readings = a DataFrame"),
+        (lambda: analytic.relative_noise(EXACT.table, 0.01), "readings = a DataFrame"),
         (lambda: Readings.read(3), "readings file = a int: must be a path"),
         (lambda: Readings.read_table(None), "readings file = a NoneType"),
-        (lambda: mesh_section([1]), "mesh file = a list: must be a path"),
-        (lambda: read_measured(None), "readings file = a NoneType"),
-        (lambda: read_measured({}, direction="up"), "direction = 'up'"),
+        (lambda: analytic.mesh_section([1]), "mesh file = a list: must be a path"),
+        (lambda: compared.read_measured(None), "readings file = a NoneType"),
+        (lambda: compared.read_measured({}, direction="up"), "direction = 'up'"),
     ],
 )
 def test_things_of_another_kind(call, said):

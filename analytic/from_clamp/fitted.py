@@ -1,6 +1,6 @@
 """What a fit of an object has found, and the likeliest of several families."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -38,9 +38,13 @@ class Fitted(Shown):
         How many the fit is from.
     noise : NoiseFound
         What of the noise remembers.
+    judged : bool
+        Whether what the fit leaves can be judged: of noise that remembers and is not stated, only
+        stations off the contact show the size.
     rivals : dict
         Of each family that was tried Schwarz's criterion, for the noise that the likeliest shows,
-        and whether it explains the readings; no family does that is worse by more than 10.
+        and whether it explains the readings; no family does that is worse by more than 10, but for
+        one that fits them as well with more parameters.
     """
 
     family: str
@@ -51,6 +55,7 @@ class Fitted(Shown):
     penalty: float
     stations: int
     noise: NoiseFound
+    judged: bool
     rivals: dict[str, tuple[float, bool]] = field(default_factory=dict)
 
     @property
@@ -58,9 +63,15 @@ class Fitted(Shown):
         """Schwarz's criterion: the least of several families is the likeliest."""
         return self.penalty - 2 * likelihood(self.by_noise)
 
+    @property
+    def others(self) -> list[str]:
+        """The families beside it that explain the readings, too."""
+        return [name for name, (_, good) in self.rivals.items() if good and name != self.family]
+
     def _tiles(self) -> dict[str, object]:
+        too = f", as {' and '.join(self.others)} do" if self.others else ""
         return {
-            self.family: "explains the readings"
+            self.family: f"explains the readings{too}"
             if self.explains
             else "does not explain the readings",
             **self.found,
@@ -94,10 +105,10 @@ def likeliest(
                 raise
             refused.append(str(error))
     likely = _criteria(found)
-    least = min(likely.values(), default=0.0)
-    good = {one.family: one.explains and likely[one.family] < least + _DECISIVE for one in found}
+    good = {one.family: one.explains and not _refuted(one, found, likely) for one in found}
     explaining = [one for one in found if good[one.family]]
-    if family == "auto" and not explaining:
+    unsure = [one for one in found if not one.judged and not _refuted(one, found, likely)]
+    if family == "auto" and not explaining and not unsure:
         best = ""
         if found:
             left = min(one.misfit for one in found)
@@ -109,7 +120,16 @@ def likeliest(
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
         raise NoFamilyError("family", f"none of them{best}", "one that explains the readings", why)
     rivals = {name: (bic, good[name]) for name, bic in likely.items()}
-    return replace(min(explaining or found, key=lambda one: likely[one.family]), rivals=rivals)
+    return replace(
+        min(explaining or unsure or found, key=lambda one: likely[one.family]), rivals=rivals
+    )
+
+
+def _refuted(one: Fitted, found: Sequence[Fitted], likely: Mapping[str, float]) -> bool:
+    """Whether the likeliest family is so by far, and not by its fewer numbers alone."""
+    best = min(found, key=lambda other: likely[other.family])
+    more = likely[one.family] - likely[best.family]
+    return more >= _DECISIVE and more > one.penalty - best.penalty
 
 
 def _criteria(found: Sequence[Fitted]) -> dict[str, float]:

@@ -16,16 +16,9 @@ from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import pair
-from analytic.problem.reach import (
-    check_ends,
-    contact_range,
-    first_contact,
-    sign_of,
-    start_of,
-    stop_of,
-)
+from analytic.problem.reach import MARGIN, check_ends, contact_range, out_of_reach, sign_of
 from analytic.problem.rest import FirstTouch, first_on_way, first_touch
-from analytic.problem.shown import Shown, described, draw, new_figure, ways
+from analytic.problem.shown import Shown, described, draw_ends, new_figure
 from analytic.problem.support import (
     AnyCase,
     Support,
@@ -119,14 +112,11 @@ class Case(AnyCase, Shown):
     def __post_init__(self) -> None:
         if self.others or isinstance(self.profile, list | tuple):
             self._put_in_order()
+        way = "a Sweep(stations=200), a Whisk(start=-1.2, stop=0.8), a ClampPath"
         for name, kind, remedy in (
             ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
             ("profile", Contour, "as catenary(0.5, -0.8), or a case's profile"),
-            (
-                "sweep",
-                ClampWay,
-                "a Sweep(stations=200), a Whisk(start=-1.2, stop=0.8), a ClampPath",
-            ),
+            ("sweep", ClampWay, way),
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
@@ -173,6 +163,45 @@ class Case(AnyCase, Shown):
     def unloaded(self) -> Unloaded:
         """The vibrissa that touches nothing, in its clamp, under its weight; dimensionless."""
         return self.support.at_rest(self.beam).shape
+
+    @cached_property
+    def _first_contact(self) -> float:
+        """The foot position at which the unloaded vibrissa first touches [L]."""
+        sign, held, beam = sign_of(self.direction), self.support, self.beam
+        if beam.varies or self.unloaded.most_turned:
+            if sign > 0:
+                held, beam = held.mirrored(), beam.mirrored()
+            return -sign * first_touch(*self._leftward, held.at_rest(beam).shape).p
+        first = self.reach[0 if sign > 0 else 1]
+        return float(self.centreline.place(np.array([first]))[0][0])
+
+    @cached_property
+    def _start(self) -> float:
+        """The foot position of the first station [length]."""
+        start = self.require_line("a foot position to start from").start
+        if start is not None:
+            return start
+        return (self._first_contact - sign_of(self.direction) * MARGIN) * self.beam.length
+
+    @cached_property
+    def _stop(self) -> float:
+        """The foot position of the last station [length]."""
+        stop = self.require_line("a foot position to stop at").stop
+        if stop is not None:
+            return stop
+        sign = sign_of(self.direction)
+        if self.others:
+            return sign * max(sign * x._stop for x in (replace(self, others=()), *self.alone))
+        contour, reach = self._leftward
+        return sign * (MARGIN - out_of_reach(contour, *reach)) * self.beam.length
+
+    @property
+    def _leftward(self) -> tuple[Contour, tuple[float, float]]:
+        """Contour and reach of the sweep to the left that this one is, or mirrors."""
+        if self.direction == "left":
+            return self.centreline, self.reach
+        mirrored = self.centreline.mirrored()
+        return mirrored, contact_range(mirrored)
 
     @cached_property
     def centreline(self) -> Contour:
@@ -348,21 +377,22 @@ class Case(AnyCase, Shown):
             With equal scales.
         """
         ax = new_figure().subplots() if ax is None else ax
-        draw(self, ax)
+        for one in (self, *self.alone):
+            xi, eta = one.outline()
+            ax.fill_between(xi, eta, eta.max(), color="#dddddd", linewidth=0)
+            ax.plot(xi, eta, color="#555555", linewidth=2.5, label=one.profile.label)
+        draw_ends(ax, self.stations, self.unloaded, self.beam)
         return ax
 
     def _draw(self, figure: "Figure") -> None:
         self.plot(figure.subplots())
 
     def _tiles(self) -> dict[str, object]:
+        first, last = self.running_values[[0, -1]]
         return {
             "case": self.name,
             "object": " and ".join(one.label for one in (self.profile, *self.others)),
             "beam": described(self.beam),
             **{name: f"{value:g}" for name, value in self.beyond_the_paper.items()},
-            "stations": ways(self),
+            "stations": f"{len(self.way)}, {self.sweep.running} from {first:.4g} to {last:.4g}",
         }
-
-    _first_contact = cached_property(first_contact)
-    _start = cached_property(start_of)
-    _stop = cached_property(stop_of)

@@ -6,8 +6,22 @@ from dataclasses import dataclass, replace
 
 from analytic.problem.along import Along
 from analytic.problem.case import Case
-from analytic.problem.clamp_path import TurningWay
-from analytic.problem.reach import shifted
+from analytic.problem.clamp_path import Sweep, TurningWay
+
+
+def between(case: Case, start: float, stop: float, stations: int | None = None) -> Case:
+    """The same sweep between other positions of the foot [length]."""
+    sweep = case.require_line("a sweep between other positions of the foot")
+    number = sweep.stations if stations is None else stations
+    return replace(case, sweep=replace(sweep, stations=number, start=start, stop=stop))
+
+
+def shifted(case: Case, x: float = 0.0, angle: float = 0.0) -> Case:
+    """The case over its own stations, whatever else is changed of it then, or beside them."""
+    if not isinstance(case.sweep, Sweep):
+        return replace(case, sweep=case.sweep.shifted(x, angle))
+    start, stop = (float(foot) + x for foot in case.foot_x[[0, -1]])
+    return replace(between(case, start, stop), clamp_angle=case.clamp_angle + angle)
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,6 @@
 Lengths in L, on the contour that the centreline feels.
 """
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from analytic.numerics.roots import smooth_zeros
@@ -14,10 +11,6 @@ from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import within
-from analytic.problem.rest import first_touch
-
-if TYPE_CHECKING:
-    from analytic.problem.case import Case
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _LOOKED_AT = 65  # places at a time, between which the least foot position is then sought
@@ -26,7 +19,7 @@ _SHARES = np.linspace(0, 1, 33)  # of the way from the lowest point to either en
 _BESIDE = np.array([0, -1, 1, -2, 2, -3, 3, -4, 4])  # roundings off a place that is interpolated
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
 
-_MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
+MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
 _SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
 
 
@@ -120,58 +113,3 @@ def check_ends(sweep: Sweep, start: float, touch: float, length: float) -> None:
         allowed = f"{'more' if more else 'less'} than the start, {start:.6g}"
         remedy = f"the foot moves to the {sweep.direction} (sweep.direction)"
         raise InputError("sweep.stop", sweep.stop, allowed, remedy)
-
-
-def first_contact(case: "Case") -> float:
-    """The foot position at which the unloaded vibrissa first touches [L]."""
-    sign, held, beam = sign_of(case.direction), case.support, case.beam
-    if beam.varies or case.unloaded.most_turned:
-        if sign > 0:
-            held, beam = held.mirrored(), beam.mirrored()
-        return -sign * first_touch(*_leftward(case), held.at_rest(beam).shape).p
-    first = case.reach[0 if sign > 0 else 1]
-    return float(case.centreline.place(np.array([first]))[0][0])
-
-
-def start_of(case: "Case") -> float:
-    """The foot position of the first station [length]."""
-    start = case.require_line("a foot position to start from").start
-    if start is not None:
-        return start
-    return (case._first_contact - sign_of(case.direction) * _MARGIN) * case.beam.length
-
-
-def stop_of(case: "Case") -> float:
-    """The foot position of the last station [length]."""
-    stop = case.require_line("a foot position to stop at").stop
-    if stop is not None:
-        return stop
-    sign = sign_of(case.direction)
-    if case.others:
-        alone = [replace(case, others=()), *case.alone]
-        return max(map(stop_of, alone), key=lambda stop: sign * stop)
-    contour, reach = _leftward(case)
-    return sign * (_MARGIN - out_of_reach(contour, *reach)) * case.beam.length
-
-
-def between(case: "Case", start: float, stop: float, stations: int | None = None) -> "Case":
-    """The same sweep between other positions of the foot [length]."""
-    sweep = case.require_line("a sweep between other positions of the foot")
-    number = sweep.stations if stations is None else stations
-    return replace(case, sweep=replace(sweep, stations=number, start=start, stop=stop))
-
-
-def shifted(case: "Case", x: float = 0.0, angle: float = 0.0) -> "Case":
-    """The case over its own stations, whatever else is changed of it then, or beside them."""
-    if not isinstance(case.sweep, Sweep):
-        return replace(case, sweep=case.sweep.shifted(x, angle))
-    start, stop = (float(foot) + x for foot in case.foot_x[[0, -1]])
-    return replace(between(case, start, stop), clamp_angle=case.clamp_angle + angle)
-
-
-def _leftward(case: "Case") -> tuple[Contour, tuple[float, float]]:
-    """Contour and reach of the sweep to the left that this one is, or mirrors."""
-    if case.direction == "left":
-        return case.centreline, case.reach
-    mirrored = case.centreline.mirrored()
-    return mirrored, contact_range(mirrored)

@@ -20,9 +20,9 @@ from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.support import Support, check_support, given_contour
 from analytic.problem.table import as_table
-from analytic.solver.columns import Units, to_columns, without
 from analytic.solver.equilibria import equilibria
 from analytic.solver.general.clearance import is_clear
+from analytic.solver.general.columns import Units, to_columns, without
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 from analytic.solver.residuals import without_inexact

@@ -21,7 +21,6 @@ from analytic.problem.rest import first_touch
 from analytic.problem.shown import Shown, stacked
 from analytic.problem.support import Support, check_support, given_contour, is_plain, require_plain
 from analytic.solver.branch import trace
-from analytic.solver.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.equilibria import Equilibria, equilibria_at, surplus_and_rate, tangent_contact
 from analytic.solver.general.chain import (
     clear_state,
@@ -29,6 +28,7 @@ from analytic.solver.general.chain import (
     second_contacts,
     with_second_contacts,
 )
+from analytic.solver.general.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import INSIDE, States, Vibrissa
 from analytic.solver.grid import along

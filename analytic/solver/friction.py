@@ -11,8 +11,9 @@ from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from analytic.problem.recorder import facing, leftward
 from analytic.problem.table import as_table, says
-from analytic.solver.columns import Units, to_columns, unloaded_columns, without
-from analytic.solver.general.states import INSIDE, Vibrissa, states_at
+from analytic.solver.general.balance import states_at
+from analytic.solver.general.columns import Units, to_columns, unloaded_columns, without
+from analytic.solver.general.states import INSIDE, Vibrissa
 from analytic.solver.general.stations import solve_near
 from analytic.solver.sweep import solve_sweep
 

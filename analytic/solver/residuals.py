@@ -14,8 +14,8 @@ import numpy as np
 from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
-from analytic.solver.columns import Numbers, ReadingColumns, Units, without
 from analytic.solver.elastica import span_of_moment
+from analytic.solver.general.columns import Numbers, ReadingColumns, Units, without
 from analytic.solver.general.span import back_to_clamp, march
 from analytic.solver.general.states import Vibrissa
 

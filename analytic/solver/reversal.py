@@ -18,9 +18,10 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import finite, whole
 from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
-from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns
+from analytic.solver.general.balance import states_at
+from analytic.solver.general.columns import ReadingColumns, Units, columns_at_rest, to_columns
 from analytic.solver.general.path import Path, follow
-from analytic.solver.general.states import States, Vibrissa, states_at
+from analytic.solver.general.states import States, Vibrissa
 from analytic.solver.general.stations import solve_places
 from analytic.solver.residuals import without_inexact
 

@@ -16,8 +16,8 @@ from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
 from analytic.problem.readings import Readings, are_finite
 from analytic.solver.branch import trace
-from analytic.solver.columns import Units, as_readings, to_columns, unloaded_columns
 from analytic.solver.general import sweep as general
+from analytic.solver.general.columns import Units, as_readings, to_columns, unloaded_columns
 from analytic.solver.general.path import located
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.residuals import inexact, residuals

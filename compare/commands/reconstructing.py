@@ -33,7 +33,7 @@ from compare.commands.sweeping import find_body as find_body
 from compare.sense.record import without_dropouts
 from compare.show.fits import band_document, band_summary, object_document, object_summary
 from compare.show.numbers import quantity
-from compare.show.passes import lag_remembered
+from compare.show.passes import consistency_line, lag_remembered
 from compare.show.scene import SweepScene, solid_ply
 
 CONVEX = "convex"
@@ -101,7 +101,7 @@ def in_the_plane(
             raise InputError(one.source, f"{len(one.table)} stations", allowed, remedy)
     level = None if noise is None else relative_noise(passes, noise)
     if friction is not None:
-        passes = [_rubbing(one, friction, level) for one in passes]
+        passes = _rubbing(passes, friction, level)
     contacts = {name: [reconstruct(one, level, method=name) for one in passes] for name in methods}
     for found, one in zip(contacts.get("elastica", ()), passes, strict=False):
         require_beam(found, one)
@@ -151,14 +151,19 @@ def in_the_plane(
     return fitted.explains and (fitted.passes is None or fitted.passes.consistent)
 
 
-def _rubbing(readings: Readings, said: str, noise: Mapping[str, float] | None) -> Readings:
+def _rubbing(
+    passes: list[Readings], said: str, noise: Mapping[str, float] | None
+) -> list[Readings]:
     friction = number_or_auto("--friction", said)
     if friction == "auto":
-        found = estimate_friction(readings, noise)
+        found = estimate_friction(passes, noise)
         terminal.print_line(
             f"friction coefficient {found.coefficient:.4f} +- {found.uncertainty:.1g}, "
             f"from {found.stations} stations of Phase B"
         )
+        if found.passes is not None and not found.passes.consistent:
+            terminal.print_line(f"friction: {consistency_line(found.passes)}")
         friction = found.coefficient
-    check_support(readings.support._replace(friction=friction), readings.beam, signed=True)
-    return readings.with_friction(friction)
+    for one in passes:
+        check_support(one.support._replace(friction=friction), one.beam, signed=True)
+    return [one.with_friction(friction) for one in passes]

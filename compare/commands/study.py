@@ -103,8 +103,8 @@ def report(
     if not any(folder.glob("*.parquet")) and not any(folder.rglob("*.json")):
         raise InputError("DIR", folder, "the folder of a run, a study, or of runs", _REMEDY)
     from compare.commands import terminal
-    from compare.report import write_report
     from compare.show.report import summary_of
+    from compare.study.report import write_report
 
     with page_folder(out or folder), waiting("reading"):
         found = write_report(folder, out, warn)

@@ -8,8 +8,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings, polygon, solve_sweep, with_friction
 from analytic.problem.arrays import Floats
-from analytic.problem.quantities import QUANTITIES
-from analytic.problem.reach import shifted
+from analytic.problem.quantities import QUANTITIES, shifted
 
 STEP = 1e-3
 """Relative change of each quantity, from which its signature is taken."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, Readings, solve_sweep
-from analytic.problem.reach import between, shifted
+from analytic.problem.quantities import between, shifted
 from compare.explain.motion import (
     OPTIONAL,
     MotionBudget,

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pandas as pd
 
-from analytic import CLAMP_READINGS, Beam, Case, Readings, Sweep, named_case, solve_sweep
+from analytic import CLAMP_READINGS, SENSED, Beam, Case, Readings, Sweep, named_case, solve_sweep
 from compare import Classification
 from compare.explain.budget import controlled_changes
 from compare.explain.motion import slower_and_finer
@@ -170,6 +170,11 @@ STATIONS = Sweep(128, 2.125, 2.125 - 127 * 5 / 128)  # of the next
 def solved() -> Readings:
     """A sweep in closed form, whose phases can be judged; steps of 5/128 have no round-off."""
     return solve_sweep(Case(BEAM, named_case("parabola").profile.scaled(BEAM.length), STATIONS))
+
+
+def sensed(readings: Readings) -> Readings:
+    """What a sensor gives, and nothing that a simulator knows."""
+    return Readings(readings.table[list(SENSED)], readings.beam, "rig")
 
 
 def scaled(readings: Readings, **gains: float) -> Readings:

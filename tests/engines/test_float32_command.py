@@ -10,15 +10,9 @@ FLOAT32 = ("inspect", "catenary", "--float32")
 @pytest.mark.parametrize("stiffnesses", ["", "1e7,", "many", "1e12", "nan"])
 def test_odd_stiffnesses_are_a_line(tmp_path, stiffnesses):
     done = vibrissa(*FLOAT32, "--contact-stiffness", stiffnesses, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "numbers between commas" in done.stderr
+    done.refused("numbers between commas")
 
 
 def test_a_wrong_version_of_the_extra_is_a_line(tmp_path, install):
     install("mujoco-warp", "1.0")
-    done = vibrissa(*FLOAT32, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "mujoco-warp 1.0 is not" in done.stderr
-    assert "pip install" in done.stderr
+    vibrissa(*FLOAT32, cwd=tmp_path).refused("mujoco-warp 1.0 is not", "pip install")

@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import pytest
 
-from analytic import named_case, solve_sweep
+from analytic import solve_sweep
 from compare.explain.split import ROUNDING, split
 from engines import find_engine
 from mujoco_models import Settings, simulate_sweep
-from tests.engines.needs import needs
+from tests.engines.needs import needs, short
 
 needs("drake")
 
 ROLES = {"mujoco": "subject", "drake": "twin", "finer": "other model"}
-CASE = replace(named_case("tip-only"), sweep=replace(named_case("tip-only").sweep, stations=30))
+CASE = short("tip-only", 30)
 
 
 @pytest.fixture(scope="module", params=[20, pytest.param(80, marks=pytest.mark.slow)])

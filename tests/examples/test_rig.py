@@ -120,7 +120,6 @@ def flawed(folder, old, new, name="rig.toml"):
     ("old", "new", "why"),
     [
         ('column = "stage", unit = "mm"', 'column = "stage"', "without a unit"),
-        ('length = "50 mm"', "length = 50", r"with units all four and \[beam\]|without a unit"),
         ('unit = "mN mm"', 'unit = "mm"', r"columns\.moment_z\.unit = 'mm': must be a unit of N m"),
         ('"Fx", unit = "mN"', '"Fx", unit = "g"', r"line \d+: columns\.force_x\.unit .* gf$"),
         (
@@ -129,16 +128,10 @@ def flawed(folder, old, new, name="rig.toml"):
             r"columns\.time\.unit .* unit of s",
         ),
         ('column = "Fx"', 'column = "F_x"', "column 'F_x' of .*missing"),
-        ("gain = 1.02", "gain = 0", "gain"),
         ("gain = 1.02", "gain = 1e200", r"force_x of the pass .*less than 1e\+40"),
-        ('"2e-6 N m^2"', '"1e-320 N m^2"', "flexural_rigidity .*1e-150"),
-        ('"2e-6 N m^2"', "2e-6", "flexural_rigidity = without a unit"),
         ("gain = 1.02", "gian = 1.02", "did you mean gain"),
-        ('column = "pass"', 'column = "run"', "column 'run'"),
-        ('free_before = "5 mm"', 'free_before = "-5 mm"', "free_before"),
         ('free_after = "5 mm"', 'free_after = "0.01 mm"', "5 or more"),
         ('missing = ["OVL"]', "missing = []", "column Fx, line .*'OVL'"),
-        ("[columns]", "[colums]", "columns"),
     ],
 )
 def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
@@ -168,6 +161,5 @@ def test_a_folder_without_files(folder):
     shutil.rmtree(folder / "data")
     (folder / "data").mkdir()
     done = vibrissa("rig", "data", "--rig", "rig.toml", cwd=folder)
-    assert done.returncode == 2
-    assert "a folder with files" in done.stderr
+    done.refused("a folder with files")
     assert not (folder / "results").exists()

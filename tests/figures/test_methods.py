@@ -73,34 +73,11 @@ def test_what_a_method_does_not_know_makes_it_err_and_what_it_knows_does_not(nam
         assert taken["worst"].max() < 2 * CIRCLE.beam.radius
 
 
-@pytest.mark.slow
-def test_a_hundred_thousand_readings_take_less_than_ten_seconds():
-    """But for those that integrate; of these it is enough to say their rate."""
-    many = solve_sweep(replace(CIRCLE, sweep=Sweep(100_000)))
-    names = [name for name in NAMES if name not in ("scholz-rahn", "clements-rahn")]
-    for name in names:
-        found = method_errors(many, [name], noise=[0.0])
-        touching = found["contacts"].sum()
-        assert found["seconds"].iloc[0] * touching < 10, name
-
-
 def test_conditions_by_name():
     assert chosen_conditions(["all"]) == [*CONDITIONS, "mujoco"]
     assert chosen_conditions(["friction", "exact", "friction"]) == ["friction", "exact"]
     with pytest.raises(InputError, match="readings = 'frictoin'"):
         chosen_conditions(["frictoin"])
-
-
-def test_deciding_never_integrates_far_beyond_the_tip():
-    """A small force may be of a tangential contact a thousand lengths away."""
-    truth = solve_sweep(CONDITIONS["curved"].true(named_case("tip-only")))
-    found = method_errors(as_believed(truth, named_case("tip-only")), ["decision"], [1e-2])
-    assert found["seconds"].max() < 0.05
-
-
-def test_a_name_that_there_is_not():
-    with pytest.raises(InputError, match="method = 'kanecko'"):
-        method_errors(solve_sweep(CIRCLE), ["kanecko"])
 
 
 def test_readings_without_contacts_cannot_judge():

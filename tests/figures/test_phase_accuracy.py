@@ -30,11 +30,3 @@ def test_phases_of_all_cases_and_both_models():
     assert calm[list(TRANSITIONS)].max(axis=None) <= 0.5
     tip_only = table[table["case"] == "tip-only"]
     assert tip_only[["phase_b_start", "phase_b_end"]].isna().all(axis=None)
-
-
-def test_phases_without_noise(case_name):
-    """Of both models, every station, and each transition within half a station."""
-    sweeps = {case_name: [exact_sweep(case_name), simulated_sweep(case_name)]}
-    table = phase_table(sweeps, levels=[0.0])
-    assert (table["right"] == 1).all()
-    assert (table[list(TRANSITIONS)].max(axis=1) <= 0.5).all()

@@ -9,15 +9,15 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.measured import Measured
-from analytic.from_clamp.calibration.unknowns import OFFSET, Sought, Unknown
-from analytic.from_clamp.object.families import Family
+from analytic.from_clamp.calibration.unknowns import OFFSET, Family, Sought, Unknown
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
 from analytic.problem.errors import InputError
-from analytic.solver.columns import Units, to_columns
-from analytic.solver.general.states import Vibrissa, rates_at
+from analytic.solver.general.balance import rates_at
+from analytic.solver.general.columns import Units, to_columns
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_beside
 from analytic.solver.general.sweep import solve
 
@@ -184,14 +184,20 @@ class LeastSquaresFit:
         if found is None:
             return columns
         here = self.misses(numbers)
-        for i, number in enumerate(numbers.tolist()):
-            step = _STEP if number + _STEP <= self.highest[i] else -_STEP
-            moved = numbers.copy()
-            moved[i] = number + step
-            cases = self._cases(moved)
+        for i in range(len(numbers)):
+            step, cases = self._beside(numbers, i)
             beside = [one.beside(*case) for one, case in zip(found, cases, strict=True)]
             columns[:, i] = (self._missed(self._in_passes(beside)) - here) / step
         return columns
+
+    def _beside(self, numbers: Floats, i: int) -> tuple[float, list[tuple[Case, Floats]]]:
+        """The step of a number to either side, and its sweeps, if there are any."""
+        step = _STEP if numbers[i] + _STEP <= self.highest[i] else -_STEP
+        by_one = np.eye(len(numbers))[i]
+        try:
+            return step, self._cases(numbers + step * by_one)
+        except InputError:  # as of an object that reaches down to the clamp
+            return -step, self._cases(numbers - step * by_one)
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
         """The same with the rigidity that fits best if nothing else depended on it."""

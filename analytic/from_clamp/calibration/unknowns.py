@@ -5,7 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from analytic.problem.along import Along
+from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
+from analytic.problem.contours.profile import Profile
 from analytic.problem.errors import InputError
 from analytic.problem.quantities import QUANTITIES
 
@@ -43,6 +45,18 @@ class Number:
     def called(self) -> str:
         """What a user calls it."""
         return self.name
+
+
+@dataclass(frozen=True)
+class Family:
+    """Contours of one kind, by numbers over L."""
+
+    name: str
+    kinds: tuple[Number, ...]
+    profile: Callable[[Floats], Profile]  # over L
+    # The numbers at which it is the contour of simpler ones, from these: where a fit starts.
+    start: Callable[[Floats], Floats]
+    simpler: tuple[str, ...] = ()  # the families of which these may be
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from analytic.from_clamp.calibration.unknowns import Number
+from analytic.from_clamp.calibration.unknowns import Family, Number
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.families import circle, ellipse
 from analytic.problem.contours.profile import Profile, of_curve
@@ -21,18 +20,6 @@ _KNOTS = 7  # at which a convex contour has a radius of curvature of its own; tw
 _GRID = 400  # intervals of slope angle, over which a convex contour is summed up
 _UPRIGHT = math.pi / 2
 _BESIDE = 1e-6  # rad from the axes, where a superellipse is flat or sharp
-
-
-@dataclass(frozen=True)
-class Family:
-    """Contours by numbers over L."""
-
-    name: str
-    kinds: tuple[Number, ...]
-    profile: Callable[[Floats], Profile]  # over L
-    # The numbers at which it is the contour of simpler ones, from these: where a fit starts.
-    start: Callable[[Floats], Floats]
-    simpler: tuple[str, ...] = ()  # the families of which these may be
 
 
 _X, _Y = (Number(f"centre_{axis}", -_AWAY, _AWAY) for axis in "xy")

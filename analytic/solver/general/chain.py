@@ -7,11 +7,12 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
+from analytic.solver.general.balance import states_at
 from analytic.solver.general.clearance import bends_one_way, deepest, is_clear
 from analytic.solver.general.curve import EquilibriumCurve, Point, turned_round
 from analytic.solver.general.pair import Pair
 from analytic.solver.general.path import Path, follow_from
-from analytic.solver.general.states import States, Vibrissa, states_at
+from analytic.solver.general.states import States, Vibrissa
 from analytic.solver.general.stations import solve_places
 
 _LOOKS = (129, 33, 33)  # places of a path, and of the step between them, that are looked at

@@ -16,8 +16,9 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Poses, Straight
 from analytic.problem.contours.contour import Contour
+from analytic.solver.general.balance import balance
 from analytic.solver.general.pair import Pair
-from analytic.solver.general.states import FORCES, INSIDE, Vibrissa, balance
+from analytic.solver.general.states import FORCES, INSIDE, Vibrissa
 
 _NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event

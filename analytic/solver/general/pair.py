@@ -16,7 +16,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.general.span import Start, back_to_clamp
-from analytic.solver.general.states import States, Vibrissa
+from analytic.solver.general.states import InnerContact, States, Vibrissa
 
 _DIFFERENCE = 1e-5  # truncation and round-off of second order are alike
 _AHEAD = np.zeros((13, 6))  # the state itself, and two steps along each of its numbers
@@ -25,15 +25,6 @@ for _k in range(6):
     _AHEAD[1 + 2 * _k, _k], _AHEAD[2 + 2 * _k, _k] = 1.0, 2.0
     _WEIGHTS[_k, [0, 1 + 2 * _k, 2 + 2 * _k]] = -1.5, 2.0, -0.5
 _SIGNS = np.array([1.0, 1.0, -1.0, 1.0, -1.0, -1.0])  # of what is bent, in what it misses
-
-
-class InnerContact(NamedTuple):
-    """The contact nearer to the clamp; arrays of shape (n,)."""
-
-    point: ContourPoint  # of the contour that the centreline feels
-    force: Floats  # normal force
-    apart: Floats  # arc length from here to the outer contact [L]
-    missed: tuple[Floats, Floats, Floats]  # by the slope angle [rad] and the place along x and y
 
 
 class Pair(NamedTuple):

@@ -11,9 +11,10 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import FirstTouch
+from analytic.solver.general.balance import balance
 from analytic.solver.general.curve import EquilibriumCurve, Point, normal_to
 from analytic.solver.general.pair import Pair
-from analytic.solver.general.states import FORCES, Vibrissa, balance
+from analytic.solver.general.states import FORCES, Vibrissa
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))

@@ -13,7 +13,7 @@ couple -mu r f remains at the contact. Of a heavy vibrissa the end beyond a cont
 (`analytic.problem.rod`), and its moment remains there, too.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,14 +21,10 @@ from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.case import Case
-from analytic.problem.clamp_path import Pose, Poses
-from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.rod import AtRest, Hung, RodProperties, at_rest, hang
 from analytic.problem.support import Support
 from analytic.solver.general.span import Start, back_by_collocation, back_to_clamp
-
-if TYPE_CHECKING:
-    from analytic.solver.general.pair import InnerContact, Pair
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
 _DIFFERENCE = 1e-5  # of a force and an excess of their size: truncation and round-off are alike
@@ -183,6 +179,15 @@ class Vibrissa(NamedTuple):
         )
 
 
+class InnerContact(NamedTuple):
+    """The contact nearer to the clamp; arrays of shape (n,)."""
+
+    point: ContourPoint  # of the contour that the centreline feels
+    force: Floats  # normal force
+    apart: Floats  # arc length from here to the outer contact [L]
+    missed: tuple[Floats, Floats, Floats]  # by the slope angle [rad] and the place along x and y
+
+
 class States(NamedTuple):
     """Vibrissae against points of the contour, in balance or not; arrays of shape (n,)."""
 
@@ -196,7 +201,7 @@ class States(NamedTuple):
     # amplitude of the span: from pi on, half a period, it is one that buckles [rad].
     amplitude: Floats
     vibrissa: Vibrissa
-    inner: "InnerContact | None" = None  # where it touches a second time, nearer to the clamp
+    inner: InnerContact | None = None  # where it touches a second time, nearer to the clamp
 
     @property
     def tangent(self) -> Booleans:
@@ -289,13 +294,6 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     return States(point, force, excess, moment, up, reach, angle, start.amplitude, vibrissa)
 
 
-def states_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> States:
-    """The states of given contour parameter, force and excess, (n, 3), or of two contacts."""
-    if not isinstance(contour, Contour):
-        return contour.states(z, vibrissa)
-    return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-
-
 def with_rates(
     point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa
 ) -> tuple[States, Floats]:
@@ -333,32 +331,3 @@ def with_rates(
     changes = _WEIGHTS @ np.array([found.angle, up, -reach])
     by_force, by_excess = changes[:, 0] / step_f, changes[:, 1] / step_w
     return here, np.stack([np.stack(by_t, axis=1), by_force.T, by_excess.T], axis=2)
-
-
-def rates_at(contour: "Contour | Pair", z: Floats, vibrissa: Vibrissa) -> tuple[States, Floats]:
-    """`states_at`, and the derivatives of what they miss by the same numbers, shape (n, k, k)."""
-    if not isinstance(contour, Contour):
-        return contour.rates(z, vibrissa)
-    return with_rates(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-
-
-def misses(found: States, pose: Pose) -> Floats:
-    """What states miss in poses: angle, height and place, (n, 3), and at a second contact."""
-    missed = [
-        found.angle - pose.angle,
-        found.height_residual + pose.foot_y,
-        found.foot_x - pose.foot_x,
-    ]
-    inner = () if found.inner is None else found.inner.missed
-    return np.stack([*missed, *inner], axis=1)
-
-
-def balance(
-    contour: "Contour | Pair", vibrissa: Vibrissa, poses: Poses, z: Floats
-) -> tuple[Floats, Floats, States]:
-    """What states on a way of the clamp miss, and the derivatives by their numbers and its own."""
-    here, rates = rates_at(contour, z[:, :-1], vibrissa)
-    pose, rate = poses.at(z[:, -1]), poses.rate(z[:, -1])
-    by_p = np.zeros((*rates.shape[:2], 1))
-    by_p[:, :3, 0] = np.stack([-rate.angle, rate.foot_y, -rate.foot_x], axis=1)
-    return misses(here, pose), np.concatenate([rates, by_p], axis=2), here

@@ -6,9 +6,10 @@ from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour
+from analytic.solver.general.balance import misses, rates_at, states_at
 from analytic.solver.general.pair import Pair
 from analytic.solver.general.path import Path, refined
-from analytic.solver.general.states import States, Vibrissa, misses, rates_at, states_at
+from analytic.solver.general.states import States, Vibrissa
 
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
 _ASIDE = 1e-6  # a state may lie so far beyond its cell: close to a fold p does not distinguish

@@ -12,7 +12,7 @@ from analytic.problem.clamp_path import Poses
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
 from analytic.problem.reach import contact_range
-from analytic.solver.columns import ReadingColumns, Units, columns_at_rest, to_columns, without
+from analytic.solver.general.balance import rates_at, states_at
 from analytic.solver.general.chain import (
     clear_state,
     joined,
@@ -21,8 +21,15 @@ from analytic.solver.general.chain import (
     with_second_contacts,
 )
 from analytic.solver.general.clearance import is_clear, is_rest_clear
+from analytic.solver.general.columns import (
+    ReadingColumns,
+    Units,
+    columns_at_rest,
+    to_columns,
+    without,
+)
 from analytic.solver.general.path import EVENTS, Path, follow, located
-from analytic.solver.general.states import States, Vibrissa, rates_at, states_at
+from analytic.solver.general.states import States, Vibrissa
 from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analytic import CLAMP_READINGS, Beam, InputError, Readings
+from analytic import CLAMP_READINGS, Readings
 from compare.align.jumps import jumps
-from compare.align.stations import Alignment, align, check_same_way, interpolant
+from compare.align.stations import Alignment, align, interpolant
 from tests.compare.synthetic import BEAM, classified
 
 TIP, TANGENT = "tip", "tangent"
@@ -93,16 +93,6 @@ def test_each_piece_is_interpolated_by_itself(reference, way):
         np.abs(X[:, None] - x).argmin(axis=0)
     ]
     np.testing.assert_allclose(found.table["contact_arc_length"], nearest, rtol=1e-12)
-
-
-@pytest.mark.parametrize("stations", [7, 40, 300])
-def test_other_numbers_of_stations(stations):
-    x = np.linspace(1.19, -0.79, stations)
-    found = paired(made(x))
-    assert sum(found.counts.values()) == stations
-    for name in CLAMP_READINGS:
-        expected = own_spline(name, found.table["at"].to_numpy())
-        np.testing.assert_allclose(found.table[f"{name}_reference"], expected, rtol=1e-12)
 
 
 def test_the_phase_is_the_references_and_contact_in_one_alone_is_not_compared():
@@ -228,16 +218,6 @@ def test_where_readings_jump_or_bend():
     bent = np.abs(x - (x[40] + x[41]) / 2)[None] * 3
     assert jumps(x, bent, none).tolist() == [40]
     assert jumps(x[:2], smooth[:, :2], none).size == 0
-
-
-def test_sweeps_that_have_nothing_in_common():
-    with pytest.raises(InputError):
-        paired(made(X - 3))
-    with pytest.raises(InputError):
-        check_same_way(
-            REFERENCE,
-            replace(made(X), beam=Beam(length=2.0, flexural_rigidity=3.0001, radius=0.01)),
-        )
 
 
 def test_what_is_interpolated_by():

@@ -91,19 +91,6 @@ def test_the_lag_is_found_named_and_taken_off(rig, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_contact_called_free_is_no_drift_and_shows_no_lag(tmp_path):
-    """Of 5 mm that are stated 1 mm is free: the load was a drift along a curve, and a lag."""
-    rng = np.random.default_rng(5)
-    for i in range(4):
-        written(tmp_path, f"run{i}.csv", ("left", "right")[i % 2], rng, lag=0.0, free=1e-3)
-    said = RIG.replace('free_before = "8', 'free_before = "5').replace('"8 mm"', '"0.9 mm"')
-    (tmp_path / "rig.toml").write_text(said)
-    done = vibrissa("rig", "raw", "--rig", "rig.toml", "--out", "out", cwd=tmp_path)
-    done.refused("passes.free_before = 5 mm, of which run0 is loaded from about")
-    assert not list((tmp_path / "out").glob("*.parquet"))
-
-
-@pytest.mark.slow
 def test_a_calibration_finds_the_lag_and_writes_the_case(rig, tmp_path):
     words = ("calibrate", rig / "passes", rig / "case.toml")
     without = vibrissa(*words, "--out", "without", cwd=tmp_path)

@@ -5,18 +5,17 @@ import json
 import pytest
 import trimesh
 
-from analytic import REAL_CASE_NAMES, Readings, named_case, solve_sweep
+from analytic import Readings, named_case, solve_sweep
 from tests.compare.command import vibrissa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["shallow-catenary", *REAL_CASE_NAMES])
-def test_named_cases(tmp_path, name):
-    done = vibrissa("run", name, "--engine", "exact", "--certified", "--out", ".", cwd=tmp_path)
-    done.ended(0, "200 of 200 stations ok")
-    found = vibrissa("reconstruct", "analytic.parquet", "--out", "found", cwd=tmp_path).ended(0)
-    assert ("192 contact points from 200 stations" in found.stdout) == (name == "whisker")
-    vibrissa("compare", name, "analytic.parquet", "--out", "compared", cwd=tmp_path).ended(0)
+def test_a_real_whisker(tmp_path):
+    words = ("--engine", "exact", "--stations", 60, "--out", ".")
+    vibrissa("run", "whisker", *words, cwd=tmp_path).ended(0, "60 of 60 stations ok")
+    found = ("reconstruct", "analytic.parquet", "--out", "found")
+    vibrissa(*found, cwd=tmp_path).ended(0, "contact points from 60 stations")
+    vibrissa("compare", "whisker", "analytic.parquet", "--out", "c", cwd=tmp_path).ended(0)
 
 
 @pytest.mark.slow
@@ -26,22 +25,19 @@ def test_any_convex_body_lies_between_two_meshes(tmp_path):
             '[body]\nkind = "ellipsoid"\nsemi_axes = [1.0, 0.7, 1.6]\ncentre = [0, 1.1, 0]\n'
             f"[path]\npoints = [[1.5, {z}], [-1.5, {z}]]\nstations = 40\n"
         )
-        done = vibrissa("run", f"{name}.toml", "--engine", "exact", "--out", name, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
+        words = ("run", f"{name}.toml", "--engine", "exact", "--out", name)
+        vibrissa(*words, cwd=tmp_path).ended(0)
     both = [f"{name}/analytic.parquet" for name in ("one", "other")]
     done = vibrissa("reconstruct", *both, "--fit", "convex", "--out", "found", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "hold a convex body of" in done.stdout
+    done.ended(0, "hold a convex body of")
     inner, outer = (trimesh.load(tmp_path / f"found/{x}.ply") for x in ("inner", "outer"))
-    assert inner.is_watertight
-    assert outer.is_watertight
+    assert inner.is_watertight and outer.is_watertight
     said = json.loads((tmp_path / "found/object.json").read_text())
     assert inner.volume == pytest.approx(said["inner_volume"])
     assert outer.volume == pytest.approx(said["outer_volume"])
     assert (tmp_path / "found/object.png").exists()
     loud = vibrissa("reconstruct", *both, "--fit", "convex", "--noise", 0.05, cwd=tmp_path)
-    assert loud.returncode == 2
-    assert "in one line or plane, within noise" in loud.stderr
+    loud.refused("in one line or plane, within noise")
 
 
 def test_a_vibrissa_that_locks_itself_is_said(tmp_path):
@@ -81,13 +77,10 @@ def test_a_cone_that_would_touch_twice_is_said(tmp_path):
         ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]', None),
         ('kind = "points"\npoints = [[-1, 1.2], [-0.5, 0.5], [0, 0.4], [1, 1.2]]', None),
         ('kind = "mesh"\nfile = "ball.stl"\noffset = [0, 1.3]', None),
-        ('kind = "mesh"\nfile = "none.stl"', "none.stl"),
-        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4]]', "three or more"),
         ('kind = "points"\npoints = [[0, 1], [1, 0], [2, 0.5], [3, 0.8]]', "point 2"),
     ],
 )
 def test_other_contours(tmp_path, profile, said):
-
     trimesh.creation.icosphere(subdivisions=3).export(tmp_path / "ball.stl")
     (tmp_path / "case.toml").write_text(f"[profile]\n{profile}\n[sweep]\nstations = 20\n")
     done = vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
@@ -100,8 +93,11 @@ def test_other_contours(tmp_path, profile, said):
 def test_friction_is_estimated_from_the_clamp(tmp_path):
     case = named_case("rubbing")
     solve_sweep(case).with_friction(0.0).write(tmp_path / "rig.csv")
-    done = vibrissa("reconstruct", "rig.csv", "--friction", "auto", "--out", "found", cwd=tmp_path)
+    (tmp_path / "again.csv").write_text((tmp_path / "rig.csv").read_text())
+    passes = "rig.csv", "again.csv"
+    done = vibrissa("reconstruct", *passes, "--friction", "auto", "--out", "found", cwd=tmp_path)
     done.ended(0, "friction coefficient 0.3000 +-")
+    assert done.stdout.count("friction coefficient") == 1
     for wrong, said in (("2", "between -1 and 1"), ("much", "a number or auto")):
-        done = vibrissa("reconstruct", "rig.csv", "--friction", wrong, cwd=tmp_path)
-        assert done.returncode == 2 and said in done.stderr
+        words = ("reconstruct", "rig.csv", "--friction", wrong)
+        vibrissa(*words, cwd=tmp_path).refused(said)

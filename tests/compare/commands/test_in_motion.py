@@ -30,13 +30,6 @@ def test_run_compares_with_the_closed_form_and_with_rest(tmp_path):
     assert vibrissa("report", "out", cwd=tmp_path).returncode == 1
 
 
-def test_simulate_says_what_moved(tmp_path):
-    done = vibrissa("run", "catenary", "--sweep-only", *FAST, cwd=tmp_path)
-    done.ended(0, "kinetic share in contact at most")
-    folder = "catenary-primitive-10-segments-40-stations-speed-0.4"
-    assert (tmp_path / "results" / folder / "mujoco-chain-in-motion.parquet").is_file()
-
-
 CASE = """
 [beam]
 length = "100 mm"
@@ -106,8 +99,8 @@ def test_the_budget_of_a_model_and_its_fastest_motion(folder):
 @pytest.mark.parametrize(
     ("model", "soft", "case", "blamed"),
     [
-        # Observed 0.31 of the 0.51 that the tutorial's chain is off by.
-        ("tutorial-chain", (), (CASE, 0.1), "contact model"),
+        # At 0.1 L/T1 0.31 of the 0.51 that the tutorial's chain is off by.
+        ("tutorial-chain", (), (CASE, 0.2), "contact model"),
         # EI 5 % off: observed a beam of 3.9e-2 in moment_z, of 3.8e-2 in all; the budget closes.
         ("sound-chain", ("0.1288", "0.12236"), (CASE.replace("= 400", "= 800"), 0.2), "beam"),
     ],
@@ -130,9 +123,7 @@ def test_the_budget_blames(folder, model, soft, case, blamed):
     ("text", "said"),
     [
         (CASE + "[motion]\nintegrator = 'rk4'\n", "line 17: motion.integrator"),
-        (CASE.replace("mine", "yours"), "yours.xml"),
         (CASE + "fot = 'base'\n", "did you mean foot?"),
-        (CASE + "contact = 'hard'\n", "model.contact"),
         (CASE.replace('"100 mm"', '"90 mm"') + "foot = 'hand'\n", "foot of the model"),
         (CASE.replace('"100 mm"', '"80 mm"').replace("40 mm", "30 mm"), "length of the model"),
     ],

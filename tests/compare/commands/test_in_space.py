@@ -61,15 +61,6 @@ def test_no_family_of_bodies_is_refused_before_anything_is_written(swept, tmp_pa
     assert not (tmp_path / "o").exists()
 
 
-@pytest.mark.slow
-def test_one_sweep_bounds_no_body(swept, tmp_path):
-    swept.write(tmp_path / "one.parquet")
-    words = ("one.parquet", "--fit", "convex", "--noise", "0.01", "--out", "o")
-    done = vibrissa("reconstruct", *words, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "give several sweeps along different lines" in done.stderr
-
-
 def test_export_asks_for_an_object_in_the_plane(tmp_path):
     (tmp_path / "case.toml").write_text(BODY)
     done = vibrissa("export", "case.toml", cwd=tmp_path)

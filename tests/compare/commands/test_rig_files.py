@@ -12,8 +12,8 @@ from analytic import SENSED, Readings, named_case, solve_sweep
 from compare.commands.comparing import turned
 from compare.commands.sweeping import RigFiles
 from compare.read.case import load_case
+from tests.compare.case_files import RIG_COLUMNS, UNITS, as_a_rig
 from tests.compare.command import vibrissa
-from tests.compare.commands.case_files import CASE, RIG_COLUMNS, UNITS, as_a_rig
 
 COMPARED = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS)
 
@@ -58,15 +58,14 @@ def rig(tmp_path) -> Path:
 def test_compare_with_a_rig(rig):
     """Own columns, units, an unknown offset, noise; without stating the last two it fails."""
     words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
-    done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig).ended(0)
+    done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig)
+    done.ended(0, "offset", "noise")
     found = json.loads((rig / "out" / "comparison.json").read_text())
     assert found["offset"]["value"] == pytest.approx(2e-3, abs=found["offset"]["uncertainty"])
     assert found["offset"]["uncertainty"] < 1e-4
-    assert "offset" in done.stdout
-    assert "noise" in done.stdout
     vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig).ended(0)
-    assert vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).returncode == 0
-    assert vibrissa(*words, "--noise", "0.003", cwd=rig).returncode == 1
+    vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).ended(0)
+    vibrissa(*words, "--noise", "0.003", cwd=rig).ended(1)
     # The other way round: the rig as the reference, whose vibrissa a file states.
     columns = [word.replace("--column", "--reference-column") for word in RIG_COLUMNS]
     beam = ("--reference-beam", "case.toml")
@@ -84,10 +83,9 @@ def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
     (rig / "own" / "analytic.parquet").write_bytes((rig / "analytic.parquet").read_bytes())
     words = ("rig.csv", *RIG_COLUMNS, "--noise", "0.003", "--offset", "auto")
     vibrissa("compare", "case.toml", *words, cwd=rig).ended(0)
-    for reference in ("analytic.parquet", "own/analytic.parquet"):
-        vibrissa("compare", reference, *words, cwd=rig)
+    vibrissa("compare", "own/analytic.parquet", *words, cwd=rig)
     names = {path.name for path in (rig / "results").iterdir()}
-    assert names == {"case-rig", "analytic-rig", "own-analytic-rig"}
+    assert names == {"case-rig", "own-analytic-rig"}
     found = json.loads((rig / "results" / "case-rig" / "comparison.json").read_text())
     given = ("--beam", "case.toml", *RIG_COLUMNS, "--offset", found["offset"]["value"])
     vibrissa("reconstruct", "rig.csv", *given, "--out", "out", cwd=rig).ended(0)
@@ -100,17 +98,12 @@ def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
     ("words", "said"),
     [
         (("reconstruct", "rig.csv", *RIG_COLUMNS), "vibrissa = none given"),
-        (("reconstruct", "rig.csv"), "--column foot_x="),
         (("compare", "rig.csv", "rig.csv", *RIG_COLUMNS), "--column foot_x="),
-        (("compare", "nowhere.toml", "rig.csv"), "nowhere.toml"),
         (("compare", "case.toml", "rig.csv", "--reference-beam", "case.toml"), "reference"),
         (("reconstruct", "analytic.parquet", "--offset", "nan"), "offset = nan"),
         ((*COMPARED, "--offset", "some"), "--offset = 'some'"),
-        ((*COMPARED, "--offset", "nan"), "--offset = 'nan'"),
         ((*COMPARED, "--noise", "2"), "noise = 2.0"),
-        ((*COMPARED, "--tolerances", "none.toml"), "none.toml"),
         ((*COMPARED, "--tolerances", "case.toml"), "[tolerances]"),
-        ((*COMPARED, "--beam", "rig.csv"), "rig.csv"),
     ],
 )
 def test_what_is_missing_or_wrong_is_said(rig, words, said):
@@ -140,20 +133,3 @@ def test_that_length_and_rigidity_are_one_is_said(tmp_path):
     sweep.table[list(SENSED)].to_csv(tmp_path / "bare.csv", index=False)
     done = vibrissa("reconstruct", "bare.csv", "--out", "out", cwd=tmp_path).ended(0)
     assert "L = EI = 1 is assumed" in done.stderr
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("undrawn")
-def test_tolerances_from_files(tmp_path):
-    """A case file's are those of its runs, a file's those of a comparison."""
-    limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'
-    (tmp_path / "case.toml").write_text(CASE + limits)
-    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
-    done.ended(1, "1.0e-9")
-    assert "allowed 1.00e-09 (to see it fail)" in (tmp_path / "out/comparison.json").read_text()
-    assert "to see it fail" in (tmp_path / "out" / "report.html").read_text()
-    (tmp_path / "limits.toml").write_text(limits)
-    both = ("out/analytic.parquet", "out/mujoco-chain.parquet")
-    assert vibrissa("compare", *both, "--out", "again", cwd=tmp_path).returncode == 0
-    words = ("--tolerances", "limits.toml", "--out", "again")
-    assert vibrissa("compare", *both, *words, cwd=tmp_path).returncode == 1

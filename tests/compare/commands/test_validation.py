@@ -13,23 +13,16 @@ from compare.measure.measurement import measure
 from compare.read.case import load_job
 from compare.read.run_folder import read_run
 from compare.show.report import write_report
+from tests.compare.case_files import POST, WIRE
 from tests.compare.command import vibrissa
 from tests.compare.planted import planted
 
-CASE = """
-[beam]
-length = "50 mm"
-flexural_rigidity = "2e-6 N m^2"
-radius = "0.25 mm"
-[profile]
-kind = "circle"
-radius = "40 mm"
-lowest = ["0 mm", "20 mm"]
-[sweep]
+CASE = f"""
+{WIRE}{POST}[sweep]
 stations = 100
 [uncertainty]
-flexural_rigidity = { standard = "3 %" }
-foot_x = { standard = "50 um" }
+flexural_rigidity = {{ standard = "3 %" }}
+foot_x = {{ standard = "50 um" }}
 [uncertainty.noise]
 moment_z = "0.2 mN mm"
 """

@@ -127,11 +127,6 @@ def test_a_models_stiffer_contacts_are_ours():
     assert "stiff" not in slower_and_finer_of_model(model, Motion(solref=(0.7, 1.0)))
 
 
-def test_what_a_motion_has_not_is_no_part():
-    found = motion_budget(EXACT, in_motion(Motion(speed=0.08), rate=1e-3))
-    assert set(found.parts) == {"rate", "damping", "time step", "at rest", "unexplained"}
-
-
 def test_a_slow_motion_has_faster_neighbours():
     """Slower ones would take seven times as long; the limit lies on the other side of the base."""
     slow = Motion(speed=0.004)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
-from compare.explain.budget import Budget, budget, common_stations, largest_rms
-from compare.explain.fit import Suspect
+from compare.explain.budget import Budget, budget, common_stations
 from compare.explain.variations import STEP
 from tests.compare.synthetic import (
     EXACT,
@@ -171,11 +170,6 @@ def test_the_closed_form_says_the_same_of_softness_and_facets():
     np.testing.assert_allclose(checks["facets"], SIZE * SIZES, rtol=1e-9)
 
 
-def test_a_suspect_says_of_what_its_share_is():
-    sizes = {name: Suspect(name, 5e-3, 1.0).size for name in ("foot_x", "height", "radius")}
-    assert sizes == {"foot_x": "+0.50% of L", "height": "+0.50% of L", "radius": "+0.50%"}
-
-
 def test_a_fault_of_the_physics_is_suspected_by_its_size():
     wrong = {name: added(run, 2.5e-2 * pattern("friction")) for name, run in at_rest().items()}
     (suspect,) = budget(EXACT, wrong, VARIED).suspects
@@ -217,10 +211,6 @@ def test_the_window_before_the_snap_off_is_left_out():
     np.testing.assert_array_equal(kept, TOUCHING & (at > at[89] - 1e-3 + 0.15))
     found = budget(ends, at_rest(), VARIED)
     assert found.stations == common_stations(ends, [EXACT]).sum() == TOUCHING.sum() - 1
-
-
-def test_the_largest_disagreement_is_of_the_three_readings():
-    assert largest_rms(EXACT, at_rest(softness=SIZE)["base"]) == pytest.approx(2 * SIZE, 1e-4)
 
 
 def test_sweeps_that_refining_does_not_change_have_no_discretisation():

@@ -9,7 +9,7 @@ from analytic import CLAMP_READINGS, Readings
 from compare.explain.fit import fitted
 from compare.explain.parts import Shared, convergence, fitted_orders
 from compare.explain.split import Split, split
-from tests.compare.synthetic import BEAM, EXACT, TOUCHING, at_rest, pattern, scaled, solved
+from tests.compare.synthetic import BEAM, EXACT, TOUCHING, at_rest, pattern, rms, scaled, solved
 
 ROLES = {"mine": "subject", "theirs": "twin", "other": "model"}
 
@@ -52,6 +52,12 @@ def test_where_most_of_it_is(subject, twin, share, blame):
     one = found(subject, twin)
     assert one.share == pytest.approx(share, rel=2e-2)
     assert one.blame == blame
+    assert ("computes this model right" in one.sentence) == (share == 0.0)
+
+
+def test_without_a_twin_there_is_no_split():
+    assert split(solved(), {"mine": off(3e-3)}, ROLES) is None
+    assert split(solved(), {"theirs": off(3e-3)}, ROLES) is None
 
 
 def test_the_disagreement_by_segments():
@@ -63,11 +69,7 @@ def test_the_disagreement_by_segments():
     )
     assert set(by_segments) == {40, 80, 160}
     for segments, errors in by_segments.items():
-        expected = (
-            1e-2
-            * (40 / segments) ** 2
-            * np.sqrt(np.mean(pattern("discretisation")[:, here] ** 2, axis=1))
-        )
+        expected = 1e-2 * (40 / segments) ** 2 * rms(pattern("discretisation"), here)
         np.testing.assert_allclose([errors[n] for n in CLAMP_READINGS], expected, rtol=1e-9)
     assert convergence(Shared(EXACT, here), [EXACT]) == {}  # which says nothing of segments
 

@@ -17,15 +17,13 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
-from analytic.problem.support import Support
 from compare.align.offset import without_offset
 from compare.measure.measurement import measure
 from compare.measure.repeats import repeats
 from compare.sense.noise import with_noise
 from compare.simulate.rigidity import tip_of
-from docs.figures.methods import as_believed
 from tests.analytic.noisy import noisy
-from tests.compare.synthetic import BEAM, changed, solved
+from tests.compare.synthetic import BEAM, changed, sensed, solved
 
 WINDOW = 0.02
 DATA = Path(__file__).parents[2] / "data"
@@ -86,8 +84,7 @@ def past_a_circle(height: float) -> Readings:
 def test_a_phase_that_noise_alone_makes():
     """Past a high circle the contact stays at the tip; a lower one has a Phase B of its own."""
     exact = past_a_circle(0.65)
-    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), seed=8)
-    rig = Readings(noisy.table[["foot_x", *CLAMP_READINGS]])
+    rig = sensed(with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), seed=8))
     found = measure(exact, rig, WINDOW)
     made = [n for n, one in found.transitions.items() if one.reference is None is not one.candidate]
     assert found.unsure() == made != []
@@ -102,8 +99,7 @@ def remembering(seed: int, stations: int = 600) -> tuple[Readings, Readings]:
     case = Case(profile=circle(0.3, (0.12, 0.68)))
     first, last = case.foot_x[[0, -1]]
     exact = solve_sweep(replace(case, sweep=Sweep(stations, first + 0.4, last - 0.4)))
-    seen = noisy(exact, relative_noise(exact, 0.01), seed, memory=0.9)
-    return exact, Readings(seen.table[["foot_x", *CLAMP_READINGS]], exact.beam)
+    return exact, sensed(noisy(exact, relative_noise(exact, 0.01), seed, memory=0.9))
 
 
 def test_noise_that_remembers_is_no_contact_and_no_phase():
@@ -143,31 +139,18 @@ def test_passes_differ_by_their_shift(seed):
     """A shift of 0.02 is found within its interval, and nothing but noise is left without it."""
     noise, rng = 1e-3, np.random.default_rng(seed)
     dense = solve_sweep(Case(BEAM, named_case("parabola").profile.scaled(2.0), Sweep(800)))
-    size = noise * np.array([np.abs(dense.values(n)).max() for n in CLAMP_READINGS])
-    noisy = [
-        replace(dense, table=dense.table[["foot_x", *CLAMP_READINGS]].assign(**{
-            n: dense.values(n) + x * rng.standard_normal(800)
-            for n, x in zip(CLAMP_READINGS, size, strict=True)}))
-        for _ in range(4)
-    ]  # fmt: skip
-    alike = repeats(noisy)
+    size = relative_noise(dense, noise)
+    passes = [sensed(noisy(dense, size, rng)) for _ in range(4)]
+    alike = repeats(passes)
     assert alike.shifts.consistent
     assert np.all(alike.rms < noise)
-    found = repeats([*noisy[:3], without_offset(noisy[3], -0.02)])
+    found = repeats([*passes[:3], without_offset(passes[3], -0.02)])
     assert not found.shifts.consistent
     assert found.shifts.farthest == 3
     shifts = found.shifts.numbers[:, 0]
     apart = shifts[3] - shifts[:3].mean()
     assert apart == pytest.approx(0.02, abs=3 * found.uncertainty[3] + 4e-4)  # slopes of the mean
     assert np.all(found.rms_without_shift < 1.3 * noise)
-
-
-def test_what_a_method_believes():
-    case = Case(BEAM, named_case("parabola").profile.scaled(2.0))
-    soft = replace(solved(), provenance={"support": {"clamp_stiffness": 15.0, "friction": 0.2}})
-    believed = as_believed(soft, replace(case, beam=replace(BEAM, radius=0.02)))
-    assert believed.support == Support()
-    assert believed.beam.radius == 0.02
 
 
 def test_the_exact_cantilever():

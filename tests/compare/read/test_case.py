@@ -33,10 +33,8 @@ TABLED = UNITED.replace('"2e-6 N m^2"', '[["0 mm", "2 N mm^2"], ["50 mm", "1e-6 
 @pytest.mark.parametrize(
     ("said", "instead", "line"),
     [
-        ("radius = 1.0", "radius = -1.0", 7),
         ("radius = 1.0", "radios = 1.0", 7),
         ("radius = 1.0", 'radius = "20 kg"', 7),
-        ("lowest = [0.0, 0.4]", 'lowest = "up"', 8),
         ("lowest = [0.0, 0.4]", "lowest = [0.0, 0.4, 1.0]", 8),
     ],
 )
@@ -54,15 +52,8 @@ def test_what_is_wrong_in_one_of_several_objects_is_named_by_its_line(
 @pytest.mark.parametrize(
     ("extra", "said"),
     [
-        ("[beam]\nlength = true\n", "line 6: beam.length = True"),
-        ("[beam]\nradius = 0.5\n", "line 6: beam.radius = 0.5: must be"),
         ("[sweep]\nstart = -2.5\n", "line 6: sweep.start = -2.5: must be"),
-        ('[sweep]\nstations = "200"\n', "line 6: sweep.stations = '200'"),
-        ("[mujoco]\nsegments = 2.5\n", "line 6: mujoco.segments = 2.5"),
         ("[mujoco]\nsegments = true\n", "line 6: mujoco.segments = True"),
-        ("[mujoco]\nplanar = 1\n", "line 6: mujoco.planar = 1"),
-        ("[sweep]\nstations = 99999999999999999999\n", "sweep.stations"),
-        ("[beam]\nlength = 1e308\n", "beam.length = 1e+308"),
         ('[beam]\nlength = "9**9**9 m"\n', "line 6: beam.length = '9**9**9 m'"),
         ("[beam]\nlength = 0x" + "f" * 5000, "line 6 = a number of 309 digits or more"),
         ("x = " + "9" * 5000, "309 digits"),
@@ -76,7 +67,7 @@ def test_values_that_cannot_be(refused, extra, said):
     assert said in refused(CIRCLE + extra)
 
 
-@pytest.mark.parametrize("name", ["../../x", "a/b", "a\\\\b", "", ".", "..", ".x", "x" * 200])
+@pytest.mark.parametrize("name", ["../../x", "a\\\\b", ".x", "x" * 200])
 def test_a_name_stays_in_its_folder(refused, name):
     assert "line 1: name" in refused(f'name = "{name}"\n{CIRCLE}')
 
@@ -150,31 +141,19 @@ def test_what_is_not_in_the_paper_has_keys(load):
     ("text", "old", "new", "said"),
     [
         (UNITED, 'flexural_rigidity = "2e-6 N m^2"\n', "", "line 1: beam.flexural_rigidity = miss"),
-        (UNITED, 'length = "50 mm"\n', "", "line 1: beam.length = missing"),
         (UNITED, 'length = "50 mm"\n', "radius = 1\n", "line 2: beam.radius = without a unit"),
-        (UNITED, UNITED[: UNITED.index("[profile]")], "", "beam.length = missing"),
         (UNITED, UNITED[UNITED.index('"circle"') :], '"two-circles"', "profile.right_radius = mis"),
         (UNITED, '"50 mm"', '"50 mmm"', "a known unit of length, as '50 mm'"),
-        (UNITED, '"2e-6 N m^2"', '"2 N"', "as '2 N mm^2'"),
-        (UNITED, '[0, "20 mm"]', '"20 mm"', "profile.lowest = '20 mm': must be a list"),
         (UNITED, '[0, "20 mm"]', '["20 mm"]', "line 7: profile.lowest.1 = missing"),
         (UNITED, '"40 mm"', '"-4 cm"', "line 6: profile.radius in SI units = -0.04: must be"),
         (UNITED, '"circle"', '"cirle"', "did you mean circle?"),
         (REAL, "0.2", "-0.2", "line 8: contact.friction = -0.2: must be greater than or equal to"),
-        (REAL, "0.2", "nan", "line 8: contact.friction = nan"),
         (REAL, '"5.585e-3 mN m/deg"', "5.0", "line 6: support.rotational_stiffness = without a un"),
         (REAL, "mN m/deg", "mN", "a known unit of moment by angle, as '0.3 mN m/rad'"),
-        (REAL, "5.585e-3", "0", "line 6: support.rotational_stiffness"),
         (REAL, "5.585e-3", "1e-9", "a hundredth of EI/L"),
-        (REAL, '"-6 1/m"', "-6", "line 4: beam.natural_curvature = without a unit"),
-        (REAL, '"-6 1/m"', "inf", "beam.natural_curvature"),
-        (REAL, "-6 1/m", "-40 1/m", "overhangs"),
         (REAL, "-6 1/m", "-70 1/m", "curved back to the foot line"),
         (REAL, "friction", "mu", "line 8: contact.mu = 0.2: must be one of the keys friction"),
-        (TABLED, ', "1e-6 N m^2"', "", "line 3: beam.flexural_rigidity"),
         (TABLED, ', "1e-6 N m^2"', "", "a list of pairs [arc length from the clamp, force times"),
-        (TABLED, "1e-6 N m^2", "1e-6 N", "a known unit of force times length squared"),
-        (TABLED, '"1e-6 N m^2"', "1e-6", "line 3: beam.flexural_rigidity = without a unit"),
         (TABLED, "1e-6 N m^2", "-1e-6 N m^2", "positive all along"),
         (
             TABLED,
@@ -182,7 +161,6 @@ def test_what_is_not_in_the_paper_has_keys(load):
             '["40 mm", "1e-6',
             "from the clamp, s = 0, to the tip, s = 0.0",
         ),
-        (TABLED, '"-6 1/m"', '"-90 1/m"', "overhangs"),
     ],
 )
 def test_what_beside_units_and_in_these_keys_cannot_be(refused, text, old, new, said):

@@ -46,51 +46,50 @@ def test_any_separator_decimal_mark_and_encoding(tmp_path, separator, decimal, e
     assert_same(read_measured(tmp_path / "rig.txt", beam=BEAM, columns=COLUMNS))
 
 
-def test_a_file_of_labview_with_its_comments(tmp_path):
-    head = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\t\nSamples\t40\t40\t40\t40\n"
-    names = "\t".join((*TABLE.columns, "Comment\n"))
-    rows = TABLE.to_csv(index=False, header=False, sep="\t")
-    (tmp_path / "rig.lvm").write_text(f"{head}{names}{rows}")
-    assert_same(read_measured(tmp_path / "rig.lvm", beam=BEAM, columns=COLUMNS))
+def separated(table: pd.DataFrame, mark: str, **how) -> str:
+    return table.to_csv(sep=mark, index=False, **how)
 
 
-def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
+NAMES = [*TABLE.columns]
+TIMED = TABLE.assign(t="09:00:00.010")[["t", *NAMES]]
+LABVIEW = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\t\nSamples\t40\t40\t40\t40\n"
+NUMBERS = "".join(f"{name}\t9\t9\t9\n" for name in ("Samples", "X0", "Delta_X"))
+HEADS = {
+    "labview": LABVIEW + "\t".join((*NAMES, "Comment\n")) + separated(TABLE, "\t", header=False),
+    # They were taken for rows.
+    "numbers": f"Channels\t3\n{NUMBERS}***End***\t\n" + separated(TABLE, "\t"),
+    "preamble": "Program 7;;;;\nDate;2026-01-01;;;\nrate;100\n\n" + separated(TIMED, ";"),
+    # The line of units was taken for names: "column 'stage' missing".
+    "clock": "Run;7;;;\n" + separated(TIMED, ";").replace("\n", "\nhh:mm:ss;m;N;N;N m\n", 1),
+}
+
+
+@pytest.mark.parametrize("text", HEADS.values(), ids=HEADS)
+def test_what_stands_above_the_rows(tmp_path, text):
+    (tmp_path / "rig.csv").write_text(text)
+    beam = Beam(si="N m" in text)
+    assert_same(read_measured(tmp_path / "rig.csv", beam=beam, columns=COLUMNS))
+    if ":" in text:
+        clock = read_text_table(tmp_path / "rig.csv").frame["t"]
+        assert clock.eq(9 * 3600 + 0.01).all()
+
+
+def test_no_header_and_a_first_cell_that_is_no_number(tmp_path):
     path = tmp_path / "rig.csv"
-    body = TABLE.assign(time="12:00:01")[["time", *TABLE.columns]].to_csv(index=False, sep=";")
-    path.write_text(f"Program 7;;;;\nDate;2026-01-01;;;\nrate;100\n\n{body}")
-    assert_same(read_measured(path, beam=BEAM, columns=COLUMNS))
-    path.write_text(TABLE.to_csv(index=False, header=False))
+    path.write_text(separated(TABLE, ",", header=False))
     columns = [f"{name}={i}" for i, name in enumerate(SENSED, 1)]
     assert_same(read_measured(path, beam=BEAM, columns=columns))
-
-
-def test_a_clock_has_no_unit(tmp_path):
-    """For hh:mm:ss the line of units was taken for names: "column 'stage' missing"."""
-    rows = TABLE.assign(t="09:00:00.010")[["t", *TABLE.columns]].to_csv(sep=";", index=False)
-    head, rest = rows.split("\n", 1)
-    (tmp_path / "rig.csv").write_text(f"Run;7;;;\n{head}\nhh:mm:ss;m;N;N;N m\n{rest}")
-    beam = Beam(si=True)
-    assert_same(read_measured(tmp_path / "rig.csv", beam=beam, columns=COLUMNS))
-    assert read_text_table(tmp_path / "rig.csv").frame["t"].eq(9 * 3600 + 0.01).all()
+    path.write_text("foot_x,force_x,moment_z\nERR,1,2\n0.1,1,2\n0.2,1,2\n")
+    assert len(read_text_table(path).frame) == 3
 
 
 def test_rows_that_lack_numbers_may_come_first(tmp_path):
     """With a text in each row they were taken for names: "column 'stage' missing"."""
-    table = TABLE.assign(run="p1")[["run", *TABLE.columns]]
+    table = TABLE.assign(run="p1")[["run", *NAMES]]
     table.loc[:4, ["Fx", "Fy", "Mz"]] = np.nan
-    table.to_csv(tmp_path / "rig.csv", index=False, sep=";")
+    (tmp_path / "rig.csv").write_text(separated(table, ";"))
     found = read_measured(tmp_path / "rig.csv", beam=BEAM, columns=COLUMNS)
     assert (len(found.table), int(found.trusted.sum())) == (40, 35)
-
-
-def test_numbers_above_the_names_are_no_rows(tmp_path):
-    """As LabVIEW writes them; under the names, a first cell that is no number is a row's."""
-    head = "".join(f"{name}\t9\t9\t9\n" for name in ("Samples", "X0", "Delta_X"))
-    data = TABLE.to_csv(sep="\t", index=False)
-    (tmp_path / "x.txt").write_text(f"Channels\t3\n{head}***End***\t\n{data}")
-    assert_same(read_measured(tmp_path / "x.txt", beam=BEAM, columns=COLUMNS))
-    (tmp_path / "x.csv").write_text("foot_x,force_x,moment_z\nERR,1,2\n0.1,1,2\n0.2,1,2\n")
-    assert len(read_text_table(tmp_path / "x.csv").frame) == 3
 
 
 def test_tables_and_units():
@@ -161,14 +160,6 @@ def test_what_an_engine_wrote_is_taken_as_it_is(tmp_path):
         assert found.provenance == sweep.provenance
     sweep.table.to_csv(tmp_path / "bare.csv", index=False)
     assert list(read_measured(tmp_path / "bare.csv").table["phase"]) == list(sweep.table["phase"])
-
-
-@pytest.mark.slow
-def test_a_million_rows(tmp_path):
-    foot = np.linspace(1, -1, 1_000_000)
-    path = tmp_path / "rig.csv"
-    pd.DataFrame({name: foot.round(7) for name in SENSED}).to_csv(path, index=False, sep=";")
-    assert len(read_measured(path, BEAM).table) > 900_000
 
 
 def test_clamp_and_friction_come_with_the_beam(tmp_path):

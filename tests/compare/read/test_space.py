@@ -10,17 +10,10 @@ from analytic.space import solve_space
 from compare import compare, read_space
 from compare.align.frames import components
 from compare.read.case import load_job, load_space_job
+from tests.compare.case_files import BALL_OF_50_MM, WIRE
 
-BALL = """
-[beam]
-length = "50 mm"
-flexural_rigidity = "2e-6 N m^2"
-radius = "0.25 mm"
-[body]
-kind = "sphere"
-radius = "50 mm"
-centre = ["0 mm", "70 mm", "0 mm"]
-[path]
+BALL = f"""
+{WIRE}{BALL_OF_50_MM}[path]
 points = [["65 mm", "15 mm"], ["-75 mm", "10 mm"]]
 tangent = [0.1, 1, 0]
 stations = 20

@@ -4,18 +4,10 @@ import math
 
 import pytest
 
-IN_UNITS = """
-[beam]
-length = "50 mm"
-flexural_rigidity = "2e-6 N m^2"
-radius = "0.25 mm"
-[profile]
-kind = "circle"
-radius = "40 mm"
-lowest = ["0 mm", "20 mm"]
-"""
-PLAIN = '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
+from tests.compare.case_files import POST, WIRE
 
+IN_UNITS = f"\n{WIRE}{POST}"
+PLAIN = '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
 
 TABLE = "[uncertainty]\n"
 
@@ -60,17 +52,13 @@ def test_plain_numbers_are_in_the_units_of_the_case(load):
         ('length = { standard = "1 mm", within = "1 mm" }', "say which of the two it is"),
         ("length = { standard = 0.1 }", "with a unit of m"),
         ('length = { standard = "-1 mm" }', "from 0 up"),
-        ('length = { standard = "x %" }', "per cent"),
         ('foot_x = { standard = "2 %" }', "with a unit of m"),
         ('friction = { standard = "0.1 N" }', "a plain number"),
-        ("friction = { standard = true }", "a number"),
-        ("friction = { standard = nan }", "a plain number"),
         ('tip_radius = { standard = "1 um" }', "has no tip_radius"),
         ('lenght = { standard = "1 mm" }', "line 11: uncertainty.lenght"),
         ('noise = { force_z = "1 mN" }', "must be a reading, one of force_x"),
         ('noise = { force_x = "2 %" }', "with a unit of N"),
         ('correlations = [["length", "radius"]]', "correlations.0.2 = missing"),
-        ("correlations = 3", "must be a list"),
         ('correlations = [["length", "radius", 0.5]]', "those are none"),
     ],
 )

@@ -45,9 +45,7 @@ def test_defects_are_counted(noisy):
     assert "some 10 rows are not there: foot_x leaps" in list(holed.defects())
     fine = noisy.table.iloc[np.sort([*range(0, 120, 8), *range(120, 200)])]
     assert inspect_record(replace(noisy, table=fine)).holes == {}  # fewer at first, as it likes
-
-
-def test_a_station_that_says_that_it_failed_lacks_nothing(noisy):
+    # A station that says that it failed lacks nothing.
     status = ["unsettled" if 60 <= i < 72 else "ok" for i in range(200)]
     failed = changed(column(noisy, "force_x", slice(60, 72), np.nan), status=status)
     assert inspect_record(failed).missing.sum() == 0

@@ -10,7 +10,7 @@ from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.readings import around_snap_off
 from compare.show.plane_page import plane_tiles
-from compare.show.report import summary_of, write_report
+from compare.show.report import summary_of
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page, written_page
 from tests.compare.synthetic import NOTHING
@@ -85,14 +85,6 @@ def test_page(pair):
         assert low < high
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", ODD.values(), ids=ODD)
-def test_whole_reports(pair, tmp_path):
-    page = Page(write_report(compare(*pair()), tmp_path).read_text(encoding="utf-8"))
-    assert page.faults == []
-    assert len(page.all("svg")) >= 6
-
-
 def test_units_are_those_of_the_beam():
     in_mm, plain = (written_page(compare(*pair)) for pair in (scaled(), picked(slice(None))))
     assert "= 50, forces in" in in_mm
@@ -109,14 +101,3 @@ def test_nothing_is_said_of_nothing(made):
     assert not any("nan" in str(block).lower() for block in blocks)
     assert not any("relative to the largest" in getattr(block, "caption", "") for block in blocks)
     assert not any("disagreement" in tile.name for tile in plane_tiles(found))
-
-
-def test_the_tile_of_the_largest_single_difference_names_its_reading_and_place():
-    exact = sweeps.exact("catenary")
-    at = 20
-    moment = exact.values("moment_z").copy()
-    moment[at] += 0.4 * np.abs(moment).max()
-    found = compare(exact, replace(exact, table=exact.table.assign(moment_z=moment)))
-    (tile,) = (one for one in plane_tiles(found) if one.name == "largest single difference")
-    assert tile.value == "4.0e-1"
-    assert tile.note.startswith("moment_z") and f"{exact.values('foot_x')[at]:.4g}"[:5] in tile.note

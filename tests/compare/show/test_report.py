@@ -9,15 +9,12 @@ import pytest
 from markupsafe import escape
 from matplotlib.figure import Figure
 
-from analytic import Readings
-from compare import Tolerances, compare
+from compare import Tolerances
 from compare.explain.fit import Suspect
 from compare.show.budgets import bars
 from compare.show.page import inline_svg
 from compare.show.verdict import verdict
 from tests.compare.planted import planted
-from tests.compare.show import sweeps
-from tests.compare.show.pages import Page, written_page
 
 ELSEWHERE = re.compile(r"(?:https?:)?//(?!www\.w3\.org/(?:1999/xlink|2000/svg)\")[a-z]")
 
@@ -76,16 +73,6 @@ def test_what_the_last_sections_hold(page):
         assert said in settings
     assert "<script" not in page.text  # the case's name
     assert "&lt;script&gt;alert(1)&lt;/script&gt; {{ 7 * 7 }}" in before
-
-
-def test_measured_readings_without_budget_or_provenance():
-    exact = sweeps.exact("parabola")
-    bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
-    page = Page(written_page(compare(bare, bare)))
-    assert page.faults == []
-    assert "Object not recorded" in page.text
-    assert not {"budget", "convergence"} & set(page.ids)
-    assert not page.all("img", "svg")
 
 
 @pytest.mark.parametrize(

@@ -200,17 +200,10 @@ CABLES: dict[str, Callable[[], Published]] = {
         'condim="1" density="6450" margin="0.02"', gravity="0 0 -9.81",
         option='timestep="0.004" density="1055" viscosity="0.004" integrator="implicitfast"',
     ),
-    # github.com/google-deepmind/mujoco_playground/issues/269
-    "Playground's cable": lambda: cable(
-        1.0, 0.002, 1e7, 6e4, 10, 'damping="0.01" armature="0.001"',
-        'mass="0.00035" friction="0.3 0.3 0.3"', option='timestep="0.01"', gravity="0 0 -9.81",
-        hold=100.0,
-    ),
 }  # fmt: skip
 CHAINS: dict[str, Callable[[], Published]] = {
     # github.com/mosesnah-shared/whip-project-targeting; Nah et al., BioRob 2020, table 2
     "Whip of 15": lambda: whip(15, 1.5, 0.1, 'stiffness="0.05" damping="0.005"', 0.1),
-    "Whip of 25": lambda: whip(25, 1.8, 0.012, 'stiffness="0.242" damping="0.092"', 0.05),
     # github.com/makepluscode/mojoco-elephant-trunk
     "Elephant's trunk": elephant,
     # github.com/arben24/mujoco_spirob

@@ -137,20 +137,17 @@ def test_a_time_constant_below_two_steps_counts_if_a_flag_says_so(tmp_path):
     assert contact_stiffness(own.found) > 5 * contact_stiffness(safe.found)
 
 
-def test_soft_contacts_with_stated_friction_become_those_that_rub(tmp_path):
-    """And not as hard as steps allow, which would chatter."""
+@pytest.mark.parametrize("solref", ["0.02 1", "0.5 1"])
+def test_friction_takes_contacts_that_are_softer(tmp_path, solref):
+    """As hard as steps allow, 57 of 60 stations of an antenna chattered; as fixed, 3.
+
+    Those that are too soft become those that rub, and not as hard as steps allow.
+    """
     rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
-    before = changed(tmp_path, OnRail(), *rubbing, ('solref="0.02 1"', 'solref="0.5 1"'))
+    before = changed(tmp_path, OnRail(), *rubbing, ('solref="0.02 1"', f'solref="{solref}"'))
+    if solref == "0.02 1":
+        assert any("friction 0.5 chatters" in str(fault) for fault in before.faults)
     after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml")
     assert after.inspection.sound
-    assert after.followed == ()
-
-
-def test_friction_takes_contacts_that_are_softer(tmp_path):
-    """As hard as steps allow, 57 of 60 stations of an antenna chattered; as fixed, 3."""
-    rubbing = ('condim="1"', 'friction="0.5"'), ("<option ", '<option cone="elliptic" ')
-    before = changed(tmp_path, OnRail(), *rubbing)
-    assert any("friction 0.5 chatters" in str(fault) for fault in before.faults)
-    after = fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection
-    assert after.sound
-    assert {geom.friction for geom in after.found.geoms} == {0.5}
+    assert {geom.friction for geom in after.inspection.found.geoms} == {0.5}
+    assert after.followed == () or solref == "0.02 1"

@@ -53,13 +53,6 @@ def test_the_contacts_at_rest_are_as_stiff_as_in_motion():
         assert at_rest(COARSE, same) == COARSE
 
 
-@pytest.mark.slow
-def test_a_case_in_space_has_a_budget():
-    swept = []
-    found, runs = measure_budget(SPACE, SpatialSettings(segments=6), lambda: swept.append(1))
-    assert (found.stations, len(swept), len(runs)) == (2, 3, 3)
-
-
 def test_each_kind_of_case_has_its_budget(monkeypatch):
     asked = []
     monkeypatch.setattr(budgets, "budget_at_rest", lambda *given: asked.append(given))

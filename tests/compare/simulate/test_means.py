@@ -13,12 +13,6 @@ CASE = replace(named_case("parabola"), sweep=Sweep(13))
 SETTINGS = Settings(segments=5, contour_points=200)
 
 
-def test_without_a_way_they_are_the_stations_own():
-    plain = simulate_sweep(CASE, SETTINGS)
-    found = sweep_as_means(CASE, SETTINGS, 0.0)
-    assert found.table[[*CLAMP_READINGS]].equals(plain.table[[*CLAMP_READINGS]])
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("average", [1.0, 0.5])
 def test_they_are_means_over_the_way_round_each_station(average):

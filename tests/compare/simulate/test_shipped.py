@@ -114,13 +114,8 @@ def test_a_first_edge_that_is_rigid_is_as_stiff_as_was_measured(tmp_path, name):
 @pytest.mark.slow
 @rods
 def test_a_rod_whose_sensors_read_nothing_is_refused():
-    assert faults_in(inspected("rod")) == {
-        "clamp",
-        "edges",
-        "force sensor",
-        "torque sensor",
-        "contact",
-    }
+    asked = {"clamp", "edges", "force sensor", "torque sensor", "contact"}
+    assert faults_in(inspected("rod")) == asked
     with pytest.raises(InputError, match="reads nothing of a flex's contacts") as caught:
         swept("rod")
     assert "\n" not in str(caught.value)

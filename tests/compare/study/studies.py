@@ -10,6 +10,7 @@ import pytest
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.keep.store import Store, read_rows
+from tests.compare.case_files import BALL
 
 EVENTS_ONLY = """
 [study]
@@ -24,16 +25,12 @@ study = { case = "catenary", keep_readings = true, timeout = 30 }
 sweep.stations = 40
 mujoco = { segments = 10, contour_points = 800 }
 """
-SIMULATED_IN_SPACE = """
+SIMULATED_IN_SPACE = f"""
 [study]
 [axes]
 mujoco.segments = [8, 16]
 path.tangent.x = [0.0, 0.1]
-[body]
-kind = "sphere"
-radius = 1
-centre = [0, 1.4, 0]
-[path]
+{BALL}[path]
 points = [[1.1, 0.3], [-0.3, 0.3]]
 stations = 12
 """

@@ -1,7 +1,7 @@
 """``vibrissa study`` and ``vibrissa report`` as a user meets them."""
 
 import re
-import resource
+import shutil
 from functools import partial
 
 import numpy as np
@@ -11,9 +11,9 @@ import pytest
 from analytic import CLAMP_READINGS
 from compare.align.frames import COMPONENTS
 from compare.study.grid.file import shipped_studies
-from compare.study.keep.database import NAME
 from compare.study.keep.store import TABLE_FILE
-from tests.compare.study.studies import EVENTS_ONLY, SIMULATED_IN_SPACE, vibrissa
+from tests.compare.command import vibrissa
+from tests.compare.study.studies import EVENTS_ONLY, SIMULATED_IN_SPACE
 
 SIMULATED = """
 [study]
@@ -37,6 +37,16 @@ def study(command):
     return partial(command, "study", "grid.toml", "--out", "out")
 
 
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """The folder of the study when all of it is done."""
+    place = tmp_path_factory.mktemp("finished")
+    (place / "grid.toml").write_text(EVENTS_ONLY)
+    done = vibrissa("study", "grid.toml", "--out", "out", cwd=place).ended(0, "40 done")
+    assert done.stderr == ""
+    return place / "out"
+
+
 @pytest.mark.parametrize(
     ("text", "code", "said"),
     [
@@ -53,10 +63,8 @@ def study(command):
     ],
     ids=["same", "longer", "further", "failing"],
 )
-def test_what_is_done_is_not_done_again(folder, study, text, code, said):
-    first = study()
-    assert (first.returncode, first.stderr) == (0, "")
-    assert "40 done" in first.stdout
+def test_what_is_done_is_not_done_again(folder, finished, study, text, code, said):
+    shutil.copytree(finished, folder / "out")
     written = (folder / "out" / TABLE_FILE).stat().st_mtime_ns
     (folder / "grid.toml").write_text(text)
     second = study()
@@ -69,8 +77,8 @@ def test_what_is_done_is_not_done_again(folder, study, text, code, said):
 
 
 @pytest.mark.slow
-def test_another_base_leaves_only_its_own_rows(folder, study):
-    study()
+def test_another_base_leaves_only_its_own_rows(folder, finished, study):
+    shutil.copytree(finished, folder / "out")
     before = pd.read_parquet(folder / "out" / TABLE_FILE)
     (folder / "grid.toml").write_text(EVENTS_ONLY + "[profile]\nc = -0.75\n")
     changed = study()
@@ -87,15 +95,6 @@ def test_another_base_leaves_only_its_own_rows(folder, study):
     pd.testing.assert_frame_equal(
         again.sort_values("run", ignore_index=True), before.sort_values("run", ignore_index=True)
     )
-
-
-@pytest.mark.parametrize("name", ["../outside", "/tmp/outside", ".hidden", "a/b", ""])
-def test_a_name_stays_in_its_folder(folder, command, name):
-    (folder / "grid.toml").write_text(EVENTS_ONLY.replace("[study]", f'[study]\nname = "{name}"'))
-    done = command("study", "grid.toml")
-    assert done.returncode == 2
-    assert "line 3" in done.stderr
-    assert [path.name for path in folder.iterdir()] == ["grid.toml"]
 
 
 @pytest.mark.parametrize("dry", [(), ("--dry-run",)])
@@ -140,17 +139,6 @@ def test_a_simulated_study_and_its_report(folder, study, command, text, least, r
     assert (folder / "out" / "report" / f"{picture}.png").stat().st_size > 10_000
 
 
-@pytest.mark.slow
-def test_damage_is_reported_in_one_line(folder, study):
-    study()
-    file = folder / "out" / NAME
-    file.write_bytes(file.read_bytes()[:500])
-    again = study()
-    (line,) = again.stderr.splitlines()
-    assert file.name in line
-    assert "40 done" in again.stdout
-
-
 @pytest.mark.parametrize("where", ["out", "out/runs.sqlite/x"])
 def test_a_folder_that_cannot_be_written_to(folder, study, where):
     path = folder / where
@@ -163,22 +151,7 @@ def test_a_folder_that_cannot_be_written_to(folder, study, where):
 
 
 @pytest.mark.slow
-def test_a_full_disk_loses_nothing(folder, study):
-    def small_files():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
-
-    done = vibrissa("study", "grid.toml", "--out", "out", cwd=folder, preexec_fn=small_files)
-    assert done.returncode == 2
-    (line,) = done.stderr.splitlines()
-    assert "--out" in line
-    after = study().ended(0)
-    kept = int(after.stdout.split(" runs, ")[1].split()[0])
-    assert kept > 0
-    assert f"{40 - kept} done" in after.stdout
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "http://127.0.0.1:9", "nonsense://", ""])
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://"])
 def test_no_scheduler_is_one_line(folder, study, address):
     done = study("--scheduler", address)
     assert not (folder / "out").exists()

@@ -4,22 +4,20 @@ import json
 
 import pytest
 
+from tests.compare.case_files import BALL
+
 pytest_plugins = ["pytester"]
 
-BALL = """
-[body]
-kind = "sphere"
-radius = 1
-centre = [0, 1.4, 0]
-[path]
+CASE = f"""
+{BALL}[path]
 points = [[1.1, 0.3], [0.2, 0.3]]
 tangent = [0.1, 1, 0]
 stations = 12
 [mujoco]
 segments = 10
 [tolerances]
-rms = { limit = 0.01, reason = "ten segments" }
-contact = { limit = 0.01, reason = "ten segments" }
+rms = {{ limit = 0.01, reason = "ten segments" }}
+contact = {{ limit = 0.01, reason = "ten segments" }}
 """
 TESTS = """
 from dataclasses import replace
@@ -39,7 +37,7 @@ def test_wrong(vibrissa_space_case, vibrissa_space_sweep, vibrissa_agreement):
 
 @pytest.fixture
 def own_folder(pytester):
-    pytester.makefile(".toml", ball=BALL)
+    pytester.makefile(".toml", ball=CASE)
     pytester.makepyfile(TESTS)
     return pytester
 

@@ -1,11 +1,8 @@
 """Single precision loses contacts where its resolution says so; nothing of that is fitted."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from analytic import Case, InputError, named_case, polygon
 from engines.found import installed
 from engines.precision.gate import by_stiffness, evaluators, gate
 from engines.precision.resolution import chance_of_loss, force_deviation
@@ -13,15 +10,10 @@ from engines.precision.state import Evaluate, State
 from mujoco_models import Settings
 from mujoco_models.sweep.sweep import set_out
 from tests.compare.command import vibrissa
-from tests.engines.needs import needs
+from tests.engines.needs import needs, short
 
 SETTINGS = Settings(segments=20)
 STIFFNESSES = (1e4, 1e6, 1e8)
-
-
-def short(name, stations=24):
-    case = named_case(name)
-    return replace(case, sweep=replace(case.sweep, stations=stations))
 
 
 def single(extra: str) -> Evaluate:
@@ -44,7 +36,7 @@ def single(extra: str) -> Evaluate:
 )
 def looked_at(request):
     name, extra = request.param
-    return gate(short(name), SETTINGS, {"single": single(extra)}, STIFFNESSES)
+    return gate(short(name, 24), SETTINGS, {"single": single(extra)}, STIFFNESSES)
 
 
 def test_the_depths_are_off_by_the_resolution(looked_at):
@@ -89,7 +81,7 @@ def test_in_double_precision_it_is_mujocos_state():
     needs("mujoco-mjx")
     from engines.precision.mjx import in_double
 
-    table = gate(short("parabola"), Settings(segments=10), {"double": in_double}, (1e4, 1e7))
+    table = gate(short("parabola", 24), Settings(segments=10), {"double": in_double}, (1e4, 1e7))
     assert not table["lost"].any()
     assert table["depth_error"].abs().max() < 2e-15
     for stiffness, rows in table.groupby("contact_stiffness"):
@@ -109,36 +101,13 @@ def test_the_chances_are_those_of_many_throws():
     )
 
 
-@pytest.mark.parametrize(
-    ("case", "settings", "says"),
-    [
-        (named_case("catenary"), Settings(beam="rod"), "beam for --float32"),
-        (Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])), Settings(), "primitive"),
-        (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
-    ],
-)
-def test_what_cannot_be_looked_at_is_a_line(case, settings, says):
-    with pytest.raises(InputError, match=says):
-        gate(case, settings, {}, STIFFNESSES)
-
-
 @pytest.mark.slow
 def test_the_command_says_where_it_loses_contacts(tmp_path):
     """By either, or both."""
     if installed("mujoco-mjx")[1] is not None:
         needs("mujoco-warp")
-    command = (
-        "inspect",
-        "parabola",
-        "--float32",
-        "--stations",
-        20,
-        "--segments",
-        20,
-        "--out",
-        "out",
-    )
-    done = vibrissa(*command, "--contact-stiffness", "1e5,1e9", cwd=tmp_path)
+    sweep = ("--stations", 20, "--segments", 20, "--contact-stiffness", "1e5,1e9")
+    done = vibrissa("inspect", "parabola", "--float32", *sweep, "--out", "out", cwd=tmp_path)
     assert done.returncode in (0, 1), done.stderr
     for name in evaluators():
         verdict = "loses no contact" if name.endswith("64 bits") else "loses contacts from"

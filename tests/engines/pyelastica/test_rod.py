@@ -9,7 +9,6 @@ from analytic import (
     CLAMP_READINGS,
     Beam,
     Case,
-    InputError,
     Sweep,
     circle,
     named_case,
@@ -18,12 +17,11 @@ from analytic import (
 )
 from engines import find_engine
 from mujoco_models import Settings
-from tests.engines.needs import needs
+from tests.engines.needs import needs, regular
 
 needs("pyelastica")
 
-TURN = 0.1 + 2 * np.pi * np.arange(6) / 6
-HEXAGON = polygon(np.column_stack([0.5 * np.cos(TURN), 0.9 + 0.5 * np.sin(TURN)]))
+HEXAGON = regular(6, 0.5, 0.9)
 
 
 def off(case: Case, segments: int, stations: int) -> np.ndarray:
@@ -133,16 +131,3 @@ def test_what_does_not_come_to_rest_is_not_ok(monkeypatch):
     touches = (exact.table["phase"] != "free").to_numpy()
     assert found.snap_off is None
     assert not found.trusted[touches].any()
-
-
-@pytest.mark.parametrize(
-    ("case", "says"),
-    [
-        (named_case("rubbing"), "friction"),
-        (named_case("pre-curved"), "natural_curvature"),
-        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), "cannot collide a line"),
-    ],
-)
-def test_what_it_has_not_is_a_line(case, says):
-    with pytest.raises(InputError, match=says):
-        find_engine("pyelastica").sweep(case, Settings())

@@ -1,7 +1,6 @@
 """What is stored: whole or not at all, once, and found again whatever happened."""
 
 import math
-import multiprocessing
 import sqlite3
 import subprocess
 import sys
@@ -50,29 +49,6 @@ def test_a_row_is_there_before_its_table_is(tmp_path, plan, stored, warned):
         store.add(stored[0])
         assert len(read_rows(tmp_path, warned.append)) == 1
         assert not (tmp_path / TABLE_FILE).exists()
-
-
-def abandon(folder, plan, results):
-    store = Store(folder, plan, print)
-    for result in results:
-        store.add(result)
-    import os
-
-    os._exit(9)
-
-
-@pytest.mark.slow
-def test_what_a_dead_process_wrote_is_there(tmp_path, plan, stored, warned):
-    process = multiprocessing.get_context("spawn").Process(
-        target=abandon, args=(tmp_path, plan, stored)
-    )
-    process.start()
-    process.join()
-    left = tmp_path / f"{NAME}-wal"
-    left.write_bytes(left.read_bytes() + b"cut o")  # as a full disk leaves it
-    with Store(tmp_path, plan, warned.append) as store:
-        assert store.done() == {result.row["run"] for result in stored}
-    assert not left.exists()
 
 
 def test_two_processes_write_at_once(tmp_path, plan, stored, warned):

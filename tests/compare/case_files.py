@@ -31,12 +31,29 @@ stations = 30
 segments = 10
 """
 
-UNITS = """
-[beam]
+WIRE = """[beam]
 length = "50 mm"
 flexural_rigidity = "2e-6 N m^2"
 radius = "0.25 mm"
-[profile]
+"""
+POST = """[profile]
+kind = "circle"
+radius = "40 mm"
+lowest = ["0 mm", "20 mm"]
+"""
+BALL = """[body]
+kind = "sphere"
+radius = 1
+centre = [0, 1.4, 0]
+"""
+BALL_OF_50_MM = """[body]
+kind = "sphere"
+radius = "50 mm"
+centre = ["0 mm", "70 mm", "0 mm"]
+"""
+
+UNITS = f"""
+{WIRE}[profile]
 kind = "catenary"
 a = 0.5
 c = -0.8
