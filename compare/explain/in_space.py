@@ -7,6 +7,7 @@ from itertools import permutations, product
 
 import numpy as np
 
+from analytic.from_clamp.noise import scatter
 from analytic.problem.arrays import Floats
 from analytic.space import reconstruct_space, wrench_complaint
 from analytic.space.problem.readings import FOOT, FORCE, MOMENT
@@ -15,6 +16,7 @@ from compare.measure.in_space import SpatialMeasurement
 
 _NEARLY_ALL = 0.05  # of the disagreement's rms: what a mistake may leave of it, beside noise
 _HIDES = 0.3  # of that rms; more noise hides which mistake it is
+_SCATTER = 0.8  # of that rms: with less that jumps from station to station, more than noise is off
 _DRAWN = 1.2  # times a noise that is stated: what some forty stations of it may show
 _FIRST = 0.9  # times what one leaves: a later mistake that leaves as much is the same
 _FEWEST = 5  # stations: fewer fit too much
@@ -31,13 +33,20 @@ def likely_in_space(found: SpatialMeasurement, noise: Mapping[str, float]) -> st
         for side in (found.reference, found.candidate)
     )
     scale = np.array([found.disagreement[names[0]].scale for names in (FORCE, MOMENT)])
-    off = _rms((seen - true) / scale[:, None, None])
+    error = (seen - true) / scale[:, None, None]
+    off = _rms(error)
     jumps = _DRAWN * _rms(np.array([*noise.values()]))
     best, least = None, np.hypot(_NEARLY_ALL * off, jumps) / _FIRST
     tried = true.shape[1] >= _FEWEST and jumps <= _HIDES * off
     for text, read in _mistakes(found, true, seen) if tried else ():
         if (left := _rms((seen - read) / scale[:, None, None])) < _FIRST * least:
             best, least = text, left
+    seen_jumps = _rms(np.array([scatter(row) for one in error for row in one.T]))
+    if best is None and seen_jumps > max(_SCATTER * off, jumps):
+        return (
+            f"noise: differences jump from station to station by {seen_jumps:.1e}; "
+            "see `--noise auto`"
+        )
     if best is not None or wrench_complaint(reconstruct_space(found.reference)) is not None:
         return best
     return wrench_complaint(reconstruct_space(found.candidate))

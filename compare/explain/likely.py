@@ -71,8 +71,10 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
         return "; ".join([*notes, *_doubted(found), *short]) or None
     jumps = np.array([scatter(row) for row in error])
     known = np.array([noise.level[name] for name in CLAMP_READINGS])
-    if (notes or short) and _agrees(error, limits, noise):
-        return "; ".join([*notes, *short])
+    many = found.alignment.counts["untrusted"] > limits.untrusted * len(found.candidate.table)
+    doubted = [*_doubted(found)] if many and not notes else []
+    if (notes or doubted or short) and _agrees(error, limits, noise):
+        return "; ".join([*notes, *doubted, *short])
     cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         cause = (

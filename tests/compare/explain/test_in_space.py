@@ -44,6 +44,13 @@ def test_a_mistake_is_named(said):
         assert_agreement(EXACT, mine)
 
 
+def test_noise_is_named_where_none_is_stated():
+    noise = 0.01 * np.random.default_rng(1).standard_normal((30, 6))
+    columns = zip(COMPONENTS, (np.hstack([FORCES, MOMENTS]) + noise).T, strict=True)
+    found = compare(EXACT, replace(EXACT, table=EXACT.table.assign(**dict(columns))))
+    assert found.likely.startswith("noise: ")
+
+
 def test_a_fault_of_the_sweep_is_no_such_mistake():
     softer = solve_space(replace(CASE, body=sphere(1.0, (0.0, 1.41, 0.0))))
     assert compare(EXACT, replace(softer, source="mine")).likely is None

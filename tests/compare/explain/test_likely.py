@@ -201,6 +201,15 @@ def test_a_moment_about_another_point_is_named():
     assert found.likely == "moment_z is about the world's origin, not the foot"
 
 
+def test_stations_that_are_not_trusted_are_the_cause_where_the_readings_agree():
+    """It was "noise: differences jump from station to station by 1.3e-10"."""
+    exact = solved()
+    jumps = 1 + 1e-10 * np.random.default_rng(1).standard_normal(len(exact.table))
+    status = np.where(np.arange(len(jumps)) % 5 == 0, "unsettled", "ok")
+    mine = changed(exact, force_x=jumps * exact.values("force_x"), status=status)
+    assert "stations are not to be trusted" in compare(exact, mine).likely
+
+
 def test_a_load_that_noise_hides_is_no_sensor_without_one():
     """A soft drive swings under the sensor: force_x alone jumped, and "the clamp reads no load"."""
     exact = solved()
