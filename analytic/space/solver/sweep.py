@@ -125,11 +125,11 @@ def _missed(states: Sequence[Sliding], feet: Floats, scene: Scene) -> Floats:
     beyond = [
         one.contact.arc_length - 1 if one.contact.tangent else -one.leans_in for one in states
     ]
-    spots = [scene.body.nearest(one.on_parallel, APART) for one in contacts]
-    off = [
-        float(np.linalg.norm(spot.point - one.spot.point))
-        for spot, one in zip(spots, contacts, strict=True)
-    ]
+    off = np.zeros(len(states))
+    if not scene.body.smooth:  # on a face, an edge or a corner as if it had no end
+        spots = [scene.body.nearest(one.on_parallel, APART).point for one in contacts]
+        places = [one.spot.point for one in contacts]
+        off = np.abs(np.reshape(spots, (-1, 3)) - np.reshape(places, (-1, 3))).max(axis=1)
     force = np.array([contact.force for contact in contacts])
     moment = np.sqrt(force) * [contact.loaded.moment for contact in contacts]
     alpha = np.array([contact.plane.alpha for contact in contacts])
