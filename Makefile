@@ -78,10 +78,10 @@ sweeps: develop  ## random sweeps in MuJoCo against the closed form; ARGS="N [SE
 models: develop  ## random foreign models, inspected and fixed; ARGS="N [SEED [SWEPT]]"
 	$(BIN)/python -m tests.fuzz.models $(or $(ARGS),200)
 
-bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping engines study", or million
+bench: develop   ## speed, side by side on one core; ARGS="ratios analytic mujoco stepping engines"
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
-net: develop     ## some 280 sweeps of this checkout, held against those that another one made in OLD
+net: develop     ## some 270 sweeps of this checkout, held against those that another one made in OLD
 	rm -rf results/net
 	$(BIN)/python -m tests.net make results/net
 	$(BIN)/python -m tests.net compare $(or $(OLD),$(error OLD=DIR is missing)) results/net

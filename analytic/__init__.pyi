@@ -54,4 +54,4 @@ from .solver.reversal import turn_back as turn_back
 from .solver.sweep import Unsolved as Unsolved
 from .solver.sweep import solve_sweep as solve_sweep
 from .solver.sweep import solve_sweeps as solve_sweeps
-from .solver.tilt import slip_off as slip_off
+from .space.solver.tilt import slip_off as slip_off

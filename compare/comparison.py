@@ -15,6 +15,7 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.align.stations import check_same_stations
 from compare.explain.budget import Budget
+from compare.explain.in_space import likely_in_space
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import (
     NoiseAllowance,
@@ -165,6 +166,11 @@ class SpatialComparison(Judged[SpatialReadings], SpatialMeasurement):
     tolerances: SpatialTolerances
     noise: SpatialAllowance
 
+    @cached_property
+    def likely(self) -> str | None:
+        """What the disagreement looks like; None if it agrees, or matches no known mistake."""
+        return None if self.agrees else likely_in_space(self, self.noise.level)
+
     @property
     def largest(self) -> str:
         """The component that is off most, by its rms."""
@@ -270,7 +276,7 @@ def compare(
     Returns
     -------
     Comparison or SpatialComparison
-        The measurement, its verdict and, in the plane, its likely cause.
+        The measurement, its verdict and its likely cause.
 
     Raises
     ------

@@ -21,6 +21,9 @@ _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZE
 _WHITE = 5.0  # times as likely beforehand as all that remembers
 _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
 _PRIOR = _LONG / _LONG.sum() / _WHITE
+# Where noise is stated, what remembers hides less, and counts as much as white noise: of AR(0.9)
+# few stations would be taken for white.
+_STATED = np.log(np.sqrt(_PRIOR) / np.sqrt(_PRIOR).sum() / _PRIOR)
 _LOG_PRIOR = np.log(np.concatenate([[[1.0]], _PRIOR]))
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _STATED_TO = 0.2  # relative, of a stated noise's variance: the noise is known to a tenth
@@ -28,9 +31,10 @@ _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
 _AT_ONCE = 500_000  # numbers in memory, 4 MB
-_SURELY = (
-    0.95  # probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it
-)
+# Probability of a memory longer than a pass; of white noise and AR(0.9) 2 of 360 have it.
+_SURELY = 0.95
+# Memories; of three channels so many show the noise's size to 0.2, and 1.5 times that is clear.
+_SHOWING = 10.0
 _REMEMBERED = 0.3  # correlation from station to station that is said
 _RANK = 1e-14  # of the largest square: rounding
 _LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
@@ -56,6 +60,11 @@ class NoiseFound:
     def remembers(self) -> Booleans:
         """Of which channels it does, so far that it is said."""
         return self.correlation > _REMEMBERED
+
+    def judged_by(self, rests: int | None) -> bool:
+        """Whether so many stations off the contact show its size; None if it is known without."""
+        forgotten = np.where(self.remembers & ~self.lasts, self.memory, 0.0)
+        return rests is None or bool(rests >= _SHOWING * forgotten.max())
 
     def said(self, names: Sequence[str]) -> Iterator[str]:
         known = np.where(self.lasts | ~self.remembers, 0.0, self.memory)
@@ -147,6 +156,7 @@ def estimate(
         # Noise that is stated has no more in all than that, or than what is left.
         total = square * (1 + _GRID[:, 1:]) / np.maximum(freedom * least**2, square[0])
         weights -= (np.log(np.maximum(total, 1.0)) / _STATED_TO) ** 2 / 2
+        weights[1:] += _STATED
     likely = softmax(weights, axis=0)
     draws = _DRAWS if known else _FEW  # where only the noise is sought
     draw = np.random.default_rng(seed)

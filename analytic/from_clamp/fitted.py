@@ -38,6 +38,9 @@ class Fitted(Shown):
         How many the fit is from.
     noise : NoiseFound
         What of the noise remembers.
+    judged : bool
+        Whether what the fit leaves can be judged: of noise that remembers and is not stated, only
+        stations off the contact show the size.
     rivals : dict
         Of each family that was tried Schwarz's criterion, for the noise that the likeliest shows,
         and whether it explains the readings; no family does that is worse by more than 10, but for
@@ -52,6 +55,7 @@ class Fitted(Shown):
     penalty: float
     stations: int
     noise: NoiseFound
+    judged: bool
     rivals: dict[str, tuple[float, bool]] = field(default_factory=dict)
 
     @property
@@ -103,7 +107,8 @@ def likeliest(
     likely = _criteria(found)
     good = {one.family: one.explains and not _refuted(one, found, likely) for one in found}
     explaining = [one for one in found if good[one.family]]
-    if family == "auto" and not explaining:
+    unsure = [one for one in found if not one.judged and not _refuted(one, found, likely)]
+    if family == "auto" and not explaining and not unsure:
         best = ""
         if found:
             left = min(one.misfit for one in found)
@@ -115,7 +120,9 @@ def likeliest(
             why = f"of {len(refused)} others the last says: {refused[-1]}; or {why}"
         raise NoFamilyError("family", f"none of them{best}", "one that explains the readings", why)
     rivals = {name: (bic, good[name]) for name, bic in likely.items()}
-    return replace(min(explaining or found, key=lambda one: likely[one.family]), rivals=rivals)
+    return replace(
+        min(explaining or unsure or found, key=lambda one: likely[one.family]), rivals=rivals
+    )
 
 
 def _refuted(one: Fitted, found: Sequence[Fitted], likely: Mapping[str, float]) -> bool:

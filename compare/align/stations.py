@@ -21,6 +21,8 @@ _EXACT, _ON_SIDE = 1e-9, 1e-4  # rad; of the closed form's contact, and of one i
 _ALIKE = 5e-3  # rad; contacts that are no farther apart are on one facet
 _SAME_PLACE = 1e-3  # of the way from station to station, where they are as near as that
 _SAME_POSE = 1e-6  # L, rad, and of a tangent's components
+# L: a stage's last digit; past an ellipsoid it moves readings by 1.1e-4 of the largest in rms.
+_SAME_FOOT = 1e-4
 _CUBIC = 4  # stations that a cubic spline needs
 _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings out
 # Of a reading's largest magnitude: half of the rms that sweeps of 40 segments are allowed.
@@ -152,7 +154,9 @@ def check_same_beam(
     sizes, others = ((beam.length, beam.base_rigidity) for beam in (one, other))
     if not np.allclose(sizes, others, rtol=1e-9, atol=0):
         what = f"of length {sizes[0]:g} and EI {sizes[1]:g}, and of {others[0]:g} and {others[1]:g}"
-        remedy = "state the one that was measured: --beam FILE, as the case's own"
+        remedy = (
+            "state the one that was measured: Readings(table, case.beam), of a file --beam FILE"
+        )
         raise InputError("vibrissae of the two sweeps", what, "the same, in the same units", remedy)
 
 
@@ -270,12 +274,15 @@ def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) 
         raise InputError(
             f"tangent of {candidate.source}", candidate.clamp_tangent.tolist(),
             f"{reference.clamp_tangent.tolist()}, that of {reference.source}",
-            "compare sweeps of one clamp",
+            "compare sweeps of one clamp: SpatialReadings(..., tangent=case.path.tangent)",
         )  # fmt: skip
     feet = reference.values(*FOOT), candidate.values(*FOOT)
-    length = reference.beam.length
-    if feet[0].shape != feet[1].shape or np.abs(feet[0] - feet[1]).max() >= _SAME_POSE * length:
-        what = f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}"
-        allowed = f"the same foot positions, to {_SAME_POSE:g} L"
-        remedy = "sweep both along one [path]"
-        raise InputError(f"stations of {candidate.source}", what, allowed, remedy)
+    what = f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}"
+    if feet[0].shape == feet[1].shape:
+        off = np.abs(feet[0] - feet[1]).max() / reference.beam.length
+        if off < _SAME_FOOT:
+            return
+        what = f"up to {off:.2g} L from those of {reference.source}"
+    allowed = f"the same foot positions in the same order, to {_SAME_FOOT:g} L"
+    remedy = "sweep both along one [path]; check the foot's unit and zero, and the rows' order"
+    raise InputError(f"stations of {candidate.source}", what, allowed, remedy)

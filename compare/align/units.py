@@ -58,7 +58,8 @@ def check_unit_of_length(
             f"foot_x of {candidate.source}",
             f"spans {spans[1]:.4g} against {spans[0]:.4g} of the reference",
             f"in the same unit: they differ by {max(best, 1 / best):g}",
-            "give the unit, as --column foot_x=COLUMN:mm, and a case or beam with units beside it",
+            "convert it; of a file give the unit, as --column foot_x=COLUMN:mm, and a case or beam "
+            "with units beside it",
         )
 
 

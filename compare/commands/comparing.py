@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from analytic import Beam, InputError, Readings, Sweep
 from analytic.problem.readings_file import is_ours
-from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_complaint
+from analytic.space import Body, SpatialReadings
 from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.output import distinct_names, page_folder
@@ -128,11 +128,8 @@ def keep_comparison(
     if passes is not None:
         terminal.show(*repeats_summary(passes))
     more = ""
-    if isinstance(found, Comparison):
-        if found.validation is None:
-            more = "; [uncertainty] in the case says whether the disagreement means anything"
-    elif (complaint := wrench_complaint(reconstruct_space(found.candidate))) is not None:
-        terminal.print_line(f"{found.candidate.source}: {complaint}")
+    if isinstance(found, Comparison) and found.validation is None:
+        more = "; [uncertainty] in the case says whether the disagreement means anything"
     terminal.print_report(written, more)
     return found.agrees
 

@@ -86,6 +86,8 @@ def reconstruct(
         )
     with waiting("loading"):
         from compare.commands import reconstructing
+    if in_space and fit is not None:
+        reconstructing.check_body(fit)
     rig, level = reconstructing.RigFiles(column or (), beam, direction, frame), noise or 0.0
     good = True
 

@@ -39,9 +39,13 @@ from compare.show.scene import SweepScene, solid_ply
 CONVEX = "convex"
 
 
+def check_body(family: str) -> None:
+    """Refuse what is no family of bodies, before anything is written."""
+    check_family(family, (*BODY_FAMILIES, CONVEX))
+
+
 def body_of(sweeps: list[SpatialReadings], place: Path, noise: float, family: str) -> bool:
     """Fit the body of a family to all sweeps, write and print it; whether it explains them."""
-    check_family(family, (*BODY_FAMILIES, CONVEX))
     if family == CONVEX:
         return _band_of(sweeps, place, noise)
     with waiting("fitting"):

@@ -10,7 +10,7 @@ from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
 from compare.explain.causes import Cause, physical_faults, sensor_faults
 from compare.explain.fit import Explanation, fitted
-from compare.explain.wiring import Misreading, misread
+from compare.explain.wiring import Misreading, about_the_origin, misread
 from compare.measure.measurement import Measurement
 
 CONVINCING = 0.9
@@ -71,6 +71,8 @@ def one_or_two(
     physical = [fault.over(known) for fault in physical]
     faults = [*sensor_faults(true), *physical]
     wirings = list(misread(true, seen, scale, found.reference.beam.length))
+    if found.reference.running == "foot_x":
+        wirings.append(about_the_origin(true, foot_x, scale))
     weigh = Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
     tried = _alone(faults, wirings, true, seen, weigh)
     best, rival = best_alone(tried, weigh)

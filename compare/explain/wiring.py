@@ -28,11 +28,18 @@ class Misreading:
     text: str
     mixes: Floats  # shape (3, 3); the readings seen, of the true ones
     sizes: int = 0  # how many numbers were fitted
-    still: Floats | float = 0.0  # shape (3, 1); what is added at all stations
+    still: Floats | float = 0.0  # shape (3, 1) or (3, stations); what is added
 
     def of(self, true: Floats) -> Floats:
         """What is read, shape (3, stations)."""
         return np.asarray(self.mixes @ true + self.still)
+
+
+def about_the_origin(true: Floats, foot_x: Floats, scale: Floats) -> Misreading:
+    """A moment about the world's origin instead of the foot."""
+    more = np.zeros_like(true)
+    more[2] = foot_x * true[1] * scale[1] / scale[2]
+    return Misreading("moment_z is about the world's origin, not the foot", np.eye(3), 0, more)
 
 
 def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Misreading]:

@@ -222,7 +222,7 @@ def _contact(found: Measurement) -> Iterator[Failure]:
     said = f"no station in contact in both sweeps ({reasons})"
     if counts["compared"]:
         said = f"all {counts['compared']} stations in contact in both are next to the snap-off"
-    elif counts["one_free"] and not (found.judged["candidate"].phase == "").all():
+    elif counts["one_free"] and not counts["untrusted"]:
         of_all = f"{touching} stations where the reference's is loaded"
         said = f"the candidate's clamp reads no load above its noise at any of the {of_all}"
     todo = "sweep a stretch where both touch, or see why stations are not trusted"
@@ -266,7 +266,8 @@ def untrusted_stretches(readings: Readings | SpatialReadings) -> Iterator[str]:
     if "status" not in readings.table:
         return
     name, (size, unit) = readings.running, readings.running_unit
-    for status, along in readings.table.groupby("status", sort=False)[name]:
+    table = readings.table.assign(**{name: readings.running_values})
+    for status, along in table.groupby("status", sort=False)[name]:
         if status != "ok":
             first, last = along.iloc[[0, -1]] / size
             yield f"{len(along)} {status}, {name} {first:.4g} to {last:.4g} {unit}"

@@ -1,17 +1,20 @@
 """A measurement that was judged: its verdict, and what is kept of it."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from typing import Any, TypeAlias
 
+import numpy as np
 from pydantic_core import to_jsonable_python
 
 from compare.judge.allowance import Allowance
 from compare.judge.failures import Failure, untrusted_stretches
+from compare.judge.rate import Rate
 from compare.judge.tolerances import CONVENTION, Limits
-from compare.measure.disagreement import Sweep, SweepPair
+from compare.measure.disagreement import Sweep, SweepPair, rms
 from compare.sense.occurrence import Occurrence
 
 Number: TypeAlias = float | int | bool | None
@@ -19,6 +22,8 @@ Number: TypeAlias = float | int | bool | None
 _SHOWN = 6  # failures in the short form
 _SLENDER = 0.05  # strain; at more, neither theory nor a chain of hinges is a vibrissa's
 _FEW = 10  # stations
+_BLURS = 0.5  # of a limit; less that means over wide stations are off is not what exceeds it
+_SHARP = 0.1  # of a limit, that they may be off by with a smaller window
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,6 +119,7 @@ class Judged(SweepPair[Sweep]):
         ]
         if self.exceeded and self.tolerances.conventional:
             notes.append(CONVENTION)
+        notes += self._blurred()
         if self.agrees and self.stations < _FEW:
             notes.append(f"note: so few stations show little: {self.stations}")
         if self.strain > _SLENDER:
@@ -122,6 +128,33 @@ class Judged(SweepPair[Sweep]):
                 f"small ones, up to {_SLENDER:.0%}"
             )
         return tuple(notes)
+
+    def _blurred(self) -> Iterator[str]:
+        """That means over the way between stations are not what is read in its middle.
+
+        By h^2 f''/24, of which the reference's stations show what they can.
+        """
+        rate = Rate.of(self.candidate)
+        if rate is None or not self.exceeded:
+            return
+        step, own = (
+            float(np.median(np.abs(np.diff(side.running_values))))
+            for side in (self.reference, self.candidate)
+        )
+        off = {}
+        for name, one in self.disagreement.items():
+            read = self.reference.values(name)
+            bends = np.diff(read[np.isfinite(read) & (read != 0)], 2) / 24 / one.scale
+            off[name] = float(rms(bends)) * (rate.average * own / step) ** 2
+        shares = {name: off[name] / self.tolerances.of(name, "rms") for name in off}
+        worst = max(shares, key=lambda name: np.nan_to_num(shares[name]))
+        if shares[worst] > _BLURS:
+            less = rate.average * math.sqrt(_SHARP / shares[worst])
+            yield (
+                f"note: in motion each reading is a mean over the way between stations, which so "
+                f"far apart makes {worst} some {off[worst]:.1e} of its largest magnitude wrong; "
+                f"take more stations, or `[motion] average = {less:.1g}`"
+            )
 
     @property
     def strain(self) -> float:

@@ -11,6 +11,7 @@ from analytic.problem.numbers import is_finite_number
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
+    from analytic.space import SpatialReadings
 
 # (beta L)^4/(2 pi)^2 of a cantilever's first vibration: its mass per length [EI T1^2/L^4].
 _MASS = 1.8751040687119611**4 / (2 * math.pi) ** 2
@@ -25,7 +26,7 @@ class Rate:
     average: float = 0.0  # of the way between two stations, over which readings are means
 
     @classmethod
-    def of(cls, readings: "Readings") -> "Rate | None":
+    def of(cls, readings: "Readings | SpatialReadings") -> "Rate | None":
         motion = readings.provenance.get("motion")
         if not isinstance(motion, Mapping):
             return None

@@ -60,7 +60,7 @@ def zero_of(foot_x: Floats, values: Floats, free: dict[str, Booleans], name: str
     for which, here in free.items():
         sound = here & np.isfinite(values).all(axis=0)
         if sound.sum() < FEWEST:
-            what = f"a stretch with {sound.sum()} rows of {name}, over {np.ptp(foot_x):.3g}"
+            what = f"a stretch with {sound.sum()} rows of {name}, which spans {np.ptp(foot_x):.3g}"
             remedy = "take a longer one, leave it out, or check the unit and the gain of foot_x"
             raise InputError(f"passes.{which}", what, f"one with {FEWEST} or more", remedy)
         stretches.append(Stretch(foot_x[sound], values[:, sound]))

@@ -97,8 +97,8 @@ def paired_events(
                 for kind, at, wide in _recorded(one)
             ]
             if "events" in one.provenance
-            else _shown(on, travel)
-            for one, on in zip(both, touching[:2], strict=True)
+            else _shown(on, travel, one.trusted | ~other.trusted)
+            for one, other, on in zip(both, both[::-1], touching[:2], strict=True)
         ]
     found = {}
     for kind in (_TOUCH, *_ENDS, _LEAVING):
@@ -120,8 +120,12 @@ def _recorded(readings: SpatialReadings) -> _Events:
     ]
 
 
-def _shown(touching: Booleans, travel: Floats) -> _Events:
-    """Midway between the stations before and after, and half of their distance uncertain."""
+def _shown(touching: Booleans, travel: Floats, known: Booleans) -> _Events:
+    """Midway between the stations before and after, and half of their distance uncertain.
+
+    A station that this sweep alone does not trust shows neither.
+    """
+    touching, travel = touching[known], travel[known]
     changes = np.flatnonzero(touching[1:] != touching[:-1])
     return [
         (

@@ -20,12 +20,19 @@ from compare.show.numbers import picked, quantity
 from compare.show.passes import consistency_line
 
 _PLAIN = ("exponent", "log", "axis", "friction")  # numbers without a unit
+_NOT_JUDGED = (
+    "noise that remembers leaves that, and so does what is not as stated: too few rows without "
+    "contact show how large the noise is; record more of them, or state it"
+)
 _CONSISTENCY = ("chi_square", "degrees", "probability", "alike")  # of passes
 
 
 def calibration_summary(calibration: Calibration) -> Iterator[Block]:
     passes, si = calibration.passes, calibration.case.beam.si
-    if calibration.misfit_shows:
+    if calibration.misfit_shows and not calibration.judged:
+        misfit = f"The fit leaves {calibration.misfit:.2g} times what jumps from row to row"
+        yield Text(f"{misfit}: {_NOT_JUDGED}")
+    elif calibration.misfit_shows:
         yield Text(
             f"The fit leaves {calibration.misfit:.2g} times the noise: something else is not as "
             "the case says (a sign, a unit, the object's place), and what follows is not to be "
@@ -82,11 +89,12 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
         )
     if len(found.rivals) > 1:
         least = min(bic for bic, _ in found.rivals.values())
+        no = "no" if found.judged else "not known"
         yield Table(
             "Schwarz's criterion, over the least: the likeliest family has 0",
             ("family", "more by", "explains the readings"),
             [
-                (name, f"{bic - least:.1f}", "yes" if explains else "no")
+                (name, f"{bic - least:.1f}", "yes" if explains else no)
                 for name, (bic, explains) in found.rivals.items()
             ],
             words=(0, 2),
@@ -98,7 +106,9 @@ def object_summary(found: FittedObject | FittedBody, si: bool) -> Iterator[Block
     if isinstance(found, FittedObject) and found.passes is not None:
         yield from _of_passes(found, found.passes)
     yield from _left(found)
-    if not found.explains:
+    if not found.explains and not found.judged:
+        yield Text(_NOT_JUDGED)
+    elif not found.explains:
         yield Text(
             f"noise alone does not explain what is left: it is no {found.family}, or something "
             "else is not as stated; the intervals hold for noise, not for that"

@@ -47,9 +47,12 @@ def spatial_verdict(comparison: SpatialComparison) -> Verdict:
     rms = short(comparison.disagreement[name].rms)
     allowed = short(comparison.tolerances.of(name, "rms"))
     over = f"over {comparison.stations} stations"
-    said = f"{name} is off most: {rms} rms {over}, {allowed} is allowed."
+    noise = comparison.noise.level[name]
+    beside = f" beside noise of {short(noise)}" if noise else ""
+    said = f"{name} is off most: {rms} rms {over}, {allowed} is allowed{beside}."
+    likely = f"likely: {comparison.likely}" if comparison.likely else ""
     return common.agreement(
-        comparison, said if worst is None else f"Most of all {worst.clause}, {over}."
+        comparison, said if worst is None else f"Most of all {worst.clause}, {over}.", likely
     )
 
 

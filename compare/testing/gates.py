@@ -62,7 +62,10 @@ def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = N
     if comparison.agrees:
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
-    causes = [why(comparison, budget)] if isinstance(comparison, Comparison) else []
+    if isinstance(comparison, Comparison):
+        causes = [why(comparison, budget)]
+    else:
+        causes = [f"likely: {comparison.likely}"] if comparison.likely else []
     lines = [title, *causes, *comparison.failures, *comparison.remarks]
     raise AssertionError("\n  ".join(lines))
 

@@ -55,6 +55,23 @@ def test_what_lacks_a_number_is_counted(exact):
     assert found.to_dict()["stations"]["status"]["candidate"] == {"ok": 18, "missing": 2}
 
 
+def test_stations_without_a_number_are_no_end_of_the_contact(exact):
+    """Its stations were a second touch, which led the verdict; a column of travel is not needed."""
+    lacking = np.flatnonzero(exact.touching)[3]
+    status = np.where(np.arange(20) == lacking, "diverged", "ok")
+    found = compare(exact, as_if_foreign(exact, status=status))
+    assert [one.name for one in found.exceeded] == ["stations"]
+    assert "1 diverged, travel" in "".join(found.remarks)
+
+
+def test_a_stage_has_a_last_digit(exact):
+    """To 1e-4 L its stations are the case's; of others the line says how far they are off."""
+    rounded = {n: exact.values(n).round(4) for n in ("foot_x", "foot_z")}
+    assert compare(exact, as_if_foreign(exact, **rounded)).agrees
+    with pytest.raises(InputError, match=r"up to 0\.9 L from"):
+        compare(exact, as_if_foreign(exact, foot_x=exact.values("foot_x")[::-1]))
+
+
 def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
     found = compare(exact, exact)
     assert found.agrees

@@ -25,19 +25,9 @@ def test_every_page_is_in_the_table_of_contents():
 def test_the_site_is_whole_and_needs_no_net(tmp_path):
     """No link is broken, every public name is described, and nothing is loaded from elsewhere."""
     pytest.importorskip("sphinx")
+    options = ["-W", "--keep-going", "-q", "-c", "docs", "."]
     done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "sphinx",
-            "-W",
-            "--keep-going",
-            "-q",
-            "-c",
-            "docs",
-            ".",
-            tmp_path / "site",
-        ],
+        [sys.executable, "-m", "sphinx", *options, tmp_path / "site"],
         cwd=ROOT,
         capture_output=True,
         text=True,

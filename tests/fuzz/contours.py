@@ -38,13 +38,17 @@ from analytic import (
 from analytic.checks.integration import integrate_span
 from analytic.problem.contours.contour import Contour
 from analytic.solver.equilibria import equilibria
-from tests.fuzz.draws import log_uniform
 
 Placed: TypeAlias = Callable[[float], Contour]
 """A contour by the height of its lowest point."""
 
 EXACT = 1e-11  # of the contact's position [L] and of angles [rad]
 HALF_TURN = np.pi / 2
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """A number whose logarithm is uniform."""
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
 def any_catenary(rng) -> Placed:

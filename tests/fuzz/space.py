@@ -63,11 +63,8 @@ def body(kind: str, draw: np.random.Generator) -> trimesh.Trimesh:
         mesh.apply_scale([1, 0.7, 1.6])
     elif kind == "hull":
         points = draw.normal(size=(int(draw.integers(20, 200)), 3))
-        points *= (
-            size
-            * draw.uniform(0.8, 1.0, (len(points), 1))
-            / np.linalg.norm(points, axis=1, keepdims=True)
-        )
+        far = size * draw.uniform(0.8, 1.0, (len(points), 1))
+        points *= far / np.linalg.norm(points, axis=1, keepdims=True)
         mesh = trimesh.convex.convex_hull(points)
     elif kind == "capsule":
         mesh = trimesh.creation.capsule(height=size, radius=0.4 * size, count=[16, 16])
@@ -81,6 +78,16 @@ def body(kind: str, draw: np.random.Generator) -> trimesh.Trimesh:
     return mesh
 
 
+def oblique(draw: np.random.Generator, wide: float, stations: int) -> FootPath:
+    """A way under a body in any direction, beside its middle, of a clamp that leans."""
+    angle, aside = draw.uniform(0, 2 * np.pi), draw.uniform(-0.6, 0.6) * wide
+    along = np.array([np.cos(angle), np.sin(angle)])
+    middle = aside * np.array([-along[1], along[0]])
+    points = [middle - (wide + 0.4) * along, middle + (wide + 0.6) * along]
+    lean = draw.uniform(-0.2, 0.2, 2)
+    return FootPath(points, tangent=(lean[0], 1.0, lean[1]), stations=stations)
+
+
 def trial(seed: int, folder: Path, kind: str | None = None, stations: int = 60) -> SpatialCase:
     """The case of this seed; its mesh is written into `folder`."""
     draw = np.random.default_rng(seed)
@@ -90,14 +97,9 @@ def trial(seed: int, folder: Path, kind: str | None = None, stations: int = 60) 
         low, high = mesh.bounds
         mesh.apply_translation([0, float(draw.uniform(0.3, 0.8)) - low[1], 0])
         wide = float(max(-low[0], high[0], -low[2], high[2]))
-        angle, aside = draw.uniform(0, 2 * np.pi), draw.uniform(-0.6, 0.6) * wide
-        along = np.array([np.cos(angle), np.sin(angle)])
-        middle = aside * np.array([-along[1], along[0]])
-        points = [middle - (wide + 0.4) * along, middle + (wide + 0.6) * along]
-        lean = draw.uniform(-0.2, 0.2, 2)
+        path = oblique(draw, wide, stations)
         file = folder / f"{kind}-{seed}.{_SUFFIXES[seed % 3]}"
         mesh.export(file)
-        path = FootPath(points, tangent=(lean[0], 1.0, lean[1]), stations=stations)
         try:
             return SpatialCase(body=convex_mesh(file), path=path, name=file.stem)
         except InputError:  # out of reach, or in the way of the clamp

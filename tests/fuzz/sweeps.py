@@ -32,7 +32,6 @@ from analytic import (
     Case,
     Contour,
     InputError,
-    Profile,
     Readings,
     Sweep,
     catenary,
@@ -46,7 +45,7 @@ from analytic import (
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.layout import OF_CURVATURE, bead_spacing
 from mujoco_models.obstacles.kinds import place
-from tests.fuzz.draws import log_uniform
+from tests.fuzz.contours import from_support, log_uniform
 
 USUAL = ("round", "needle", "small", "smooth", "polygon", "mesh")
 KINDS = (*USUAL, "mixed")
@@ -87,12 +86,16 @@ class Outcome:
     flags: tuple[str, ...]
 
 
-def trial(seed: int, folder: Path, kind: str | None = None, wide: bool = False) -> Trial:
+def trial(
+    seed: int, folder: Path, kind: str | None = None, wide: bool = False, skip: int = 0
+) -> Trial:
     """The trial of this seed; a mesh's file is put into `folder`.
 
-    A wide one may have three stations, five segments and an object next to the clamp.
+    A wide one may have three stations, five segments and an object next to the clamp. So many
+    numbers of the seed are skipped.
     """
     draw = np.random.default_rng(seed)
+    draw.bit_generator.advance(skip)
     while True:
         chosen = kind or str(draw.choice(KINDS if wide else USUAL))
         try:
@@ -143,25 +146,13 @@ def _smooth(draw: np.random.Generator, height: float) -> Contour:
     n, f, size = int(draw.integers(2, 6)), float(draw.uniform(0, 6.28)), float(draw.uniform(0.1, 1))
     e = 0.8 * float(draw.random()) / (n**2 - 1)
 
-    def support(alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        phase = n * (alpha - f)
-        return size * (1 + e * np.cos(phase)), -size * e * n * np.sin(phase)
-
-    def xi(alpha: np.ndarray) -> np.ndarray:
-        p, dp = support(alpha)
-        return p * np.sin(alpha) + dp * np.cos(alpha)
-
-    def eta(alpha: np.ndarray) -> np.ndarray:
-        p, dp = support(alpha)
-        return -p * np.cos(alpha) + dp * np.sin(alpha)
-
-    low = float(eta(np.linspace(-1.57, 1.57, 2001)).min())
-    return Profile(
-        xi,
-        lambda alpha: eta(alpha) - low + height,
+    return from_support(
+        lambda alpha: size * (1 + e * np.cos(n * (alpha - f))),
+        lambda alpha: -size * e * n * np.sin(n * (alpha - f)),
+        None,
         (-np.pi / 2, np.pi / 2),
         f"support n={n} e={e:.3g}",
-    )
+    )(height)
 
 
 def _polygon(draw: np.random.Generator, height: float) -> Contour:

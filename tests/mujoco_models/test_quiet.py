@@ -1,9 +1,10 @@
-"""What MuJoCo refuses only while it runs is a line, and not the end of a command."""
+"""What MuJoCo refuses only while it runs, or a viewer without a display, is a line."""
 
 import mujoco
 import pytest
 
-from analytic import InputError
+from analytic import InputError, named_case
+from mujoco_models import view_sweep
 from mujoco_models.quiet import unlogged
 
 
@@ -15,3 +16,10 @@ def test_what_the_engine_refuses_while_it_runs_is_bad_input():
     refused = r"refused by MuJoCo while it runs.*condim value: 0"
     with pytest.raises(InputError, match=refused), unlogged():
         mujoco.mj_step(model, mujoco.MjData(model))
+
+
+def test_without_a_display(monkeypatch):
+    monkeypatch.setattr("glfw.init", lambda: False)
+    with pytest.raises(InputError, match=r"display = none: .*vibrissa run CASE --film") as refused:
+        view_sweep(named_case("parabola"))
+    assert "\n" not in str(refused.value)

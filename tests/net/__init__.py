@@ -1,4 +1,4 @@
-"""A net under a change: some 280 sweeps, made and stored by any commit, and compared.
+"""A net under a change: some 270 sweeps, made and stored by any commit, and compared.
 
 ``python -m tests.net make OUT`` makes the set of the checkout that it is run in, and
 ``python -m tests.net compare OLD NEW`` says what differs. A checkout without a net is swept by

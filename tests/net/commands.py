@@ -2,11 +2,9 @@
 
 import json
 import os
-import re
 import subprocess
 import sys
 import tomllib
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,26 +27,13 @@ def call(*words: str) -> str:
     return done.stdout
 
 
-@cache
-def offers(command: str) -> bool:
-    """Whether this checkout has it: some will go into others."""
-    return re.search(rf"^\W*{command}\s", call("--help"), re.MULTILINE) is not None
-
-
 def split(case: str, *options: str) -> dict[str, Any]:
     """Both models, compared and split into parts: what the folder's JSON files hold."""
-    words = ["run", "CASE", "--budget"]
-    if "[body]" in case and offers("space"):
-        words = ["space", "CASE", "--engine", "mujoco", "--budget"]
-    elif "speed" in f"{case}{options}" and offers("budget"):
-        words = ["budget", "CASE"]
     if "[" in case:
         Path("case.toml").write_text(case)
         case = "case.toml"
-    call(*(case if word == "CASE" else word for word in words), "--out", "out", *options)
-    names = ("comparison", "budget", "motion-budget")
-    files = [path for name in names if (path := Path("out") / f"{name}.json").exists()]
-    return {path.stem: json.loads(path.read_text()) for path in files}
+    call("run", case, "--budget", "--out", "out", *options)
+    return {path.stem: json.loads(path.read_text()) for path in Path("out").glob("*.json")}
 
 
 def study(text: str) -> Any:

@@ -200,7 +200,7 @@ def _knowing_the_noise(
         found = estimate(
             left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
         )
-        relieved.append(curved * found.relief + least * found.of_hum)
+        relieved.append(found.relief + least * found.of_hum)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)
         moved = _inside(fit, numbers + found.numbers)
         if not np.isfinite(fit.expected(moved)).any():  # too far, of what is hardly determined

@@ -80,6 +80,9 @@ class Calibration(Shown):
         Whether the fit leaves more than chance and the noise, known to a tenth, do.
     noise : NoiseFound
         What of the noise remembers: correlation, memory and hum, of force_x, force_y, moment_z.
+    judged : bool
+        Whether what the fit leaves can be judged: of noise that remembers and is not stated, only
+        stations off the contact show the size.
     jitter : float
         Standard deviation of the foot's place, if the readings show any [length].
     passes : Consistency or None
@@ -103,6 +106,7 @@ class Calibration(Shown):
     misfit: float
     misfit_shows: bool
     noise: NoiseFound
+    judged: bool
     jitter: float
     passes: Consistency | None
     scatter: dict[str, float]
@@ -234,6 +238,7 @@ def calibrate(
         misfit,
         not explained_by_noise(misfit, fit.freedom, fit.measured.vague),
         known.noise,
+        known.noise.judged_by(fit.measured.rests),
         float(fit.measured.spread[0]),
         alike,
         {name: (one.highest - one.lowest) / 2 for name, one in scattered.items() if name != LAG},

@@ -184,14 +184,20 @@ class LeastSquaresFit:
         if found is None:
             return columns
         here = self.misses(numbers)
-        for i, number in enumerate(numbers.tolist()):
-            step = _STEP if number + _STEP <= self.highest[i] else -_STEP
-            moved = numbers.copy()
-            moved[i] = number + step
-            cases = self._cases(moved)
+        for i in range(len(numbers)):
+            step, cases = self._beside(numbers, i)
             beside = [one.beside(*case) for one, case in zip(found, cases, strict=True)]
             columns[:, i] = (self._missed(self._in_passes(beside)) - here) / step
         return columns
+
+    def _beside(self, numbers: Floats, i: int) -> tuple[float, list[tuple[Case, Floats]]]:
+        """The step of a number to either side, and its sweeps, if there are any."""
+        step = _STEP if numbers[i] + _STEP <= self.highest[i] else -_STEP
+        by_one = np.eye(len(numbers))[i]
+        try:
+            return step, self._cases(numbers + step * by_one)
+        except InputError:  # as of an object that reaches down to the clamp
+            return -step, self._cases(numbers - step * by_one)
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
         """The same with the rigidity that fits best if nothing else depended on it."""

@@ -45,6 +45,9 @@ class Measured:
     # Relative variance of the noise's square beside that of white noise of as many stations: what
     # remembers shows less of its size, where it is free and under load.
     vague: float
+    # Stations off the contact, which show the size of noise that remembers; None if it is stated,
+    # or a rig says it.
+    rests: int | None
 
     @classmethod
     def of(
@@ -66,6 +69,7 @@ class Measured:
             rows=tuple(n for one in each for n in one.rows),
             ends=tuple(ends for one in each for ends in one.ends),
             vague=float(np.mean([one.vague for one in each])) / len(each),
+            rests=None if each[0].rests is None else sum(one.rests or 0 for one in each),
             **pooled,
         )
 
@@ -168,7 +172,8 @@ def measured_under_load(
     bend, rows = known_to("bend_uncertainty", readings), (len(order),)
     start, stop = x[readings.trusted][[0, -1]].tolist()
     ends = ((start, stop),)
-    return Measured(x[order], found, spread, rows, ends, zero, bend, free, vague)
+    rests = unloaded if stated is None and of_free is None else None
+    return Measured(x[order], found, spread, rows, ends, zero, bend, free, vague, rests)
 
 
 def let_go(force: Floats, least: float) -> int:

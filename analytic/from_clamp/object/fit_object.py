@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -36,6 +36,7 @@ _FEWEST = 8  # contact points
 _WIDER = 1.0, 2.0, 4.0  # circles than that through points, from which a fit starts
 _BAND = 181  # points of the band
 _STEP = 1e-5  # of a number, for a derivative
+_Fit: TypeAlias = tuple[LeastSquaresFit, Floats, float, Estimated]
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -133,14 +134,14 @@ def families_fitted(
     circles = _circles_through(x, y)
     others = [UNKNOWNS[name] for name in beside]
     known = families(angles)
-    tried: dict[str, tuple[LeastSquaresFit, Floats, float, Estimated]] = {}
+    tried: dict[str, _Fit] = {}
 
-    def fitted(name: str) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
+    def fitted(name: str) -> _Fit:
         if name not in tried:
             one = known[name]
             simpler = circles
             if one.simpler:
-                simpler = [fit.of_object(at) for fit, at, *_ in map(fitted, one.simpler)]
+                simpler = [fit.of_object(at) for fit, at, *_ in _some(fitted, one.simpler)]
             measured, case = _measured(passes, noise, len(one.kinds) + len(others))
             objects = [one.start(at) for at in simpler]
             fit = LeastSquaresFit(measured, case, others, one, objects)
@@ -154,6 +155,19 @@ def families_fitted(
             seen = replace(seen, by_noise=as_likely_by(given, fit, numbers))
         return _object(known[name], fit, numbers, misfit, seen, angles)
 
+    return found
+
+
+def _some(fitted: Callable[[str], _Fit], simpler: Sequence[str]) -> list[_Fit]:
+    """The fits of the simpler families that there are."""
+    found, refused = [], None
+    for name in simpler:
+        try:
+            found.append(fitted(name))
+        except InputError as error:  # as one that runs away
+            refused = error
+    if refused is not None and not found:
+        raise refused
     return found
 
 
@@ -240,6 +254,7 @@ def _object(
         penalty=len(kinds) * float(np.log(data)),
         stations=stations,
         noise=known.noise,
+        judged=known.noise.judged_by(fit.measured.rests),
         passes=alike,
     )
 

@@ -78,6 +78,7 @@ class _Contacts(NamedTuple):
     tip: Booleans
     sides: Floats  # two unit vectors across the normal, shape (n, 2, 3)
     spread: Floats  # standard deviation of the six components, shape (6,)
+    rests: int | None  # stations behind the contact; None if the noise is stated
 
     def constraints(self, readings: Floats, family: Family, numbers: Floats) -> Floats:
         """What vanishes if a vibrissa has such readings on such a body, shape (n, 6).
@@ -196,7 +197,8 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     before = reach < 1 - _CLEAR * np.sqrt(variance[0])
     at_tip = release > _CLEAR * np.sqrt(variance[1])
     kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip) & (variance[0] < _NEAR**2)
-    return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread)
+    rests = len(idle) if noise is None else None
+    return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread, rests)
 
 
 def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
@@ -260,6 +262,7 @@ def _fitted(
         penalty=len(numbers) * float(np.log(left.size)),
         stations=len(measured),
         noise=known.noise,
+        judged=known.noise.judged_by(None if stated else sum(one.rests or 0 for one in passes)),
     )
 
 

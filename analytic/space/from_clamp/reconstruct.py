@@ -123,6 +123,7 @@ def reconstruct_space(
     place, normal, arc_length, criterion = np.split(loaded.contacts(), [3, 6, 7])
     there = (arc_length[0] >= 0) & (arc_length[0] <= LONGEST)
     moment, size = loaded.moment, np.linalg.norm(loaded.moment, axis=1)
+    size[size == 0] = np.inf  # no part of no moment is along anything
     lever = moment / np.linalg.norm(loaded.force, axis=1)[:, None]
     along_noise = lever**2 @ deviation[:3] ** 2 + normal.T**2 @ deviation[3:] ** 2
     uncertainty, sine_spread = _spread(loaded, stated, seed)
@@ -180,7 +181,8 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
     if along <= _SUSPICIOUS:
         return (
             f"the moment has {torsion:.1%} along the clamp's tangent: the force does not lie in a "
-            "plane with it, as with friction across the vibrissa, a curved one or a wrong tangent"
+            "plane with it, as with components in the clamp's frame (of a file: `--frame clamp`), "
+            "a wrong tangent, friction across the vibrissa, or a curved one"
         )
     if torsion <= _SUSPICIOUS:
         return (
@@ -233,7 +235,7 @@ def _hollow(found: pd.DataFrame) -> str | None:
         return None
     return (
         "the contacts lie on a hollow surface, no convex body's: signs (they are the clamp's "
-        "action on the vibrissa), axes or frame are others"
+        "action on the vibrissa), axes, frame or the rows' order are others"
     )
 
 

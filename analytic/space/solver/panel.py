@@ -1,11 +1,12 @@
-r"""The curve of states that rub, panel by panel, by collocation.
+r"""The curve of states, panel by panel, by collocation.
 
 Along a panel all of a state is a polynomial of what grows along the curve's tangent at its begin.
-It starts from what it was there. At Radau's points it is at rest, and obeys Coulomb's law: while it
-slides the velocity v of the vibrissa's point along the body, the polynomials' slope, is along
-friction, v . (n x rub) = 0 and |rub| = mu; while it sticks v = 0. Radau's method damps, however
-stiff a law is: the less friction there is the faster its direction follows the velocity, and at
-first contact, where f rub' = G(rub, f), at once.
+Without friction each state is at rest on its own, and polynomials say nearly where. With friction
+it starts from what it was at the panel's begin. At Radau's points it is at rest, and obeys
+Coulomb's law: while it slides the velocity v of the vibrissa's point along the body, the
+polynomials' slope, is along friction, v . (n x rub) = 0 and |rub| = mu; while it sticks v = 0.
+Radau's method damps, however stiff a law is: the less friction there is the faster its direction
+follows the velocity, and at first contact, where f rub' = G(rub, f), at once.
 """
 
 import operator
@@ -23,6 +24,7 @@ from analytic.space.solver.sliding import (
     LENGTH,
     RUB,
     TRAVEL,
+    TURNED,
     Leg,
     Sliding,
     changed,
@@ -38,6 +40,9 @@ _WILD = 1.0  # L and rad, of any of them
 # Of its last step; where the force is so small that rounding leaves more, what that leaves.
 _EXACT, _ROUNDING = 1e-12, 1e-7
 _LEFT = 1e-10  # L, rad and of friction over the normal force: of the polynomials' last terms
+_GUESSED = 1e-5  # the same without friction, where a state needs no other one
+_NEARLY = 1e-9  # of such a state's equations
+_UP_TO_RELEASE = 0.999  # of the way to where a tip, that a body can only push, is straight
 _SHARE = 1e-15  # of a panel, to which a place on it is enclosed
 _AT_REST = 1e-15  # of the equations, by the extent
 
@@ -68,27 +73,34 @@ class Law(NamedTuple):
     friction: float
     sticks: bool
 
+    @property
+    def rubs(self) -> bool:
+        """Whether it slides with friction."""
+        return self.friction > 0 and not self.sticks
+
     def ways(self, state: Sliding) -> Floats:
-        """Directions along the body in which the velocity vanishes, shape (1 or 2, 3)."""
-        if self.sticks:
-            return state.sides
+        """Directions along the body in which the velocity vanishes, shape (0 to 2, 3)."""
+        if not self.rubs:
+            return state.sides if self.sticks else np.zeros((0, 3))
         return cross(state.contact.spot.normal, state.rub)[None] / self.friction
 
     def missed(self, state: Sliding) -> Floats:
-        """What vanishes at rest with such friction, shape (5 or 6,)."""
+        """What vanishes at rest with such friction, shape (5 to 7,)."""
         contact = state.contact
         phase = -state.leans_in if contact.tangent else contact.arc_length - 1
         off = float(contact.plane.normal @ state.beside)
         found = [*(contact.foot - self.leg.foot(state.travel)), off, phase]
-        if not self.sticks:
+        if self.rubs:
             found.append((float(state.rub @ state.rub) / self.friction - self.friction) / 2)
+        elif not self.sticks:
+            found.extend(state.sides @ state.rub)
         return np.array(found)
 
     def rows(self, state: Sliding) -> Floats:
-        """The rates of that, shape (5 or 6, 8)."""
+        """The rates of that, shape (5 to 7, 8)."""
         found = equations(state, self.leg.onward)
-        if self.sticks:
-            return found
+        if not self.rubs:
+            return found if self.sticks else np.vstack([found, np.eye(8)[RUB]])
         size = np.zeros(8)
         size[RUB] = state.sides @ state.rub / self.friction
         return np.vstack([found, size])
@@ -105,19 +117,24 @@ class Law(NamedTuple):
         found = np.linalg.svd(np.vstack([self.rows(state), law]))[2][-1]
         return np.asarray(found * np.sign(found[TRAVEL]))
 
-    def settled(self, scene: Scene, near: Sliding, by: Floats, amount: float) -> Sliding | None:
+    def settled(
+        self, scene: Scene, near: Sliding, by: Floats, amount: float, enough: float = _AT_REST
+    ) -> Sliding | None:
         """At rest, where weighted parts of the state come to an amount: the nearest such state."""
         state, missed = near, np.inf
         extent = max(1.0, float(np.abs(near.contact.foot).max()))
         for _ in range(_STEPS):
             miss = np.append(self.missed(state), by @ state.vector - amount)
             last, missed = missed, float(np.abs(miss).max()) / extent
-            if missed <= _AT_REST or (missed > last / 4 and missed <= 100 * _AT_REST):
+            if missed <= enough or (missed > last / 4 and missed <= 100 * _AT_REST):
                 return state
             rows = np.vstack([self.rows(state), grows(state, by)])
             if not np.isfinite(rows).all() or missed > _WILD:
                 return None
-            step = np.asarray(-rows.T @ np.linalg.solve(rows @ rows.T, miss))
+            if self.friction:
+                step = np.asarray(-rows.T @ np.linalg.solve(rows @ rows.T, miss))
+            else:  # where it slips off, their square is singular to rounding
+                step = -np.linalg.lstsq(rows, miss)[0]
             vector = state.vector + changed(state, step)
             state = state_of(scene, vector, state.contact.tangent)
         return None
@@ -137,7 +154,7 @@ class Panel(NamedTuple):
     @property
     def coarse(self) -> float:
         """How much its polynomials leave, over what they may."""
-        return float(np.abs(self.series[-1]).max()) / _LEFT
+        return float(np.abs(self.series[-1]).max()) / (_LEFT if self.law.friction else _GUESSED)
 
     def share_at(self, travel: float, last: float) -> float:
         """Where the foot has come so far; it goes on until the last share, at least."""
@@ -170,6 +187,7 @@ class Panel(NamedTuple):
         return grows[:3] - grows[3] * state.end, float(grows[4])
 
 
+@np.errstate(invalid="ignore")  # what is tried inside a body has no normal, and is no state
 def panel(
     scene: Scene, law: Law, start: Sliding, reach: float, before: Panel | None = None
 ) -> Panel | None:
@@ -178,12 +196,49 @@ def panel(
         return None
     by = changed(start, law.along_curve(start))
     by = by / np.sqrt(by @ by)
+    if not law.friction and not start.contact.tangent and by[TURNED] < 0:
+        reach = min(reach, _UP_TO_RELEASE * start.rotation / -by[TURNED])
     amounts = float(by @ start.vector) + reach * POINTS[1:]
     if before is None:
         vectors = start.vector + np.outer(reach * POINTS[1:], by)
     else:
         vectors = np.array([before.beyond(1 + reach / before.reach * x) for x in POINTS[1:]])
-    states = [state_of(scene, vector, start.contact.tangent) for vector in vectors]
+    near = [state_of(scene, vector, start.contact.tangent) for vector in vectors]
+    if law.friction:
+        states = _collocated(scene, law, start, near, reach, by, amounts)
+    else:
+        states = _each_settled(scene, law, near, by, amounts)
+    if states is None:
+        return None
+    found = [start, *states]
+    series = _SERIES @ np.array([state.vector for state in found])
+    rates = np.asarray(2 * legendre.legder(_SERIES @ _moving(found)) / reach, dtype=float)
+    return Panel(scene, law, by, reach, found, series, rates)
+
+
+def _each_settled(
+    scene: Scene, law: Law, near: list[Sliding], by: Floats, amounts: Floats
+) -> list[Sliding] | None:
+    """States without friction, from the last one on, which fails first."""
+    found = []
+    for state, amount in zip(near[::-1], amounts[::-1], strict=True):
+        settled = law.settled(scene, state, by, amount, _NEARLY)
+        if settled is None:
+            return None
+        found.append(settled)
+    return found[::-1]
+
+
+def _collocated(
+    scene: Scene,
+    law: Law,
+    start: Sliding,
+    states: list[Sliding],
+    reach: float,
+    by: Floats,
+    amounts: Floats,
+) -> list[Sliding] | None:
+    """States with friction, all at once."""
     size = np.inf
     for _ in range(_STEPS):
         matrix, missed = _system(law, start, states, reach, by, amounts)
@@ -202,10 +257,7 @@ def panel(
             for one, step in both
         ]
         if size <= _EXACT or (size <= _ROUNDING and size > last / 4):
-            found = [start, *states]
-            series = _SERIES @ np.array([state.vector for state in found])
-            rates = np.asarray(2 * legendre.legder(_SERIES @ _moving(found)) / reach, dtype=float)
-            return Panel(scene, law, by, reach, found, series, rates)
+            return states
     return None
 
 
@@ -228,7 +280,7 @@ def _system(
         own = matrix[i, :, i]
         own[:rest], own[7] = law.rows(state), grows(state, by)
         own[rest:7] -= speed * ways @ end_rates(state)
-        if not law.sticks:
+        if law.rubs:
             turned = cross(state.rub, velocity) @ state.turned
             own[6, :2] += turned / law.friction
             own[6, RUB] += state.sides @ cross(velocity, state.contact.spot.normal) / law.friction

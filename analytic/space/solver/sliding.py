@@ -1,4 +1,4 @@
-r"""A vibrissa that rubs against a body in space, at rest.
+r"""A vibrissa that slides along a body in space, or sticks to it, at rest.
 
 One dead force F = f (n + rub), n the body's normal and rub, along its surface, friction over the
 normal force, bends a thin, straight, isotropic vibrissa in one plane, that of its clamp's tangent t
@@ -22,6 +22,7 @@ from analytic.space.solver.contact import APART, Contact, Loaded, Plane, Scene, 
 RUB, PSI, ROTATION, LENGTH, TRAVEL = slice(2, 4), 4, 5, 6, 7
 """Among rates: of friction along `across` the normal, e's turn, and what `State` calls so; the
 first two are those of the place on the parallel surface, along the same."""
+TURNED = 9  # the rotation's place in a state's vector
 BY_TRAVEL = np.eye(12)[-1]
 
 

@@ -24,10 +24,11 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 from analytic.space.problem.recorder import stated
-from analytic.space.solver.contact import Contact, Plane, Scene
-from analytic.space.solver.rubbing import Rubbed, Rubbing
+from analytic.space.solver.branch import Held
+from analytic.space.solver.contact import APART, Plane, Scene
+from analytic.space.solver.sliding import Sliding
 from analytic.space.solver.stability import margin, second_variation
-from analytic.space.solver.walk import Gliding
+from analytic.space.solver.walk import Walk
 
 _SOLVED = 1e-11  # L, EI/L, rad: of the residual by the closed form
 _CERTIFIED = 1e-9  # of that by integration, which is good to 1e-12
@@ -72,12 +73,11 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     scene = Scene(way.body, case.path.clamp_tangent, way.radius)
     travel = case.path.travel
     with threadpool_limits(1):  # the matrices are small
-        walker = Rubbing(scene, way, case.friction) if case.friction else Gliding(scene, way)
-        walked = walker.along(travel / length)
+        walked = Walk(scene, way, case.friction).along(travel / length)
     feet = case.path.at(travel)
     touching = [contact is not None for contact in walked.contacts]
     held = [one for one in walked.contacts if one is not None]
-    missed = iter(_missed([_contact(one) for one in held], feet[touching] / length, scene))
+    missed = iter(_missed([one.state for one in held], feet[touching] / length, scene))
     rows = [
         _row(one, next(missed), scene, beam) if one else _free(status)
         for one, status in zip(walked.contacts, walked.statuses, strict=True)
@@ -91,13 +91,9 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     return _with_certificate(readings) if certified else readings
 
 
-def _contact(held: Contact | Rubbed) -> Contact:
-    return held if isinstance(held, Contact) else held.state.contact
-
-
-def _row(held: Contact | Rubbed, missed: float, scene: Scene, beam: Beam) -> dict[str, object]:
+def _row(held: Held, missed: float, scene: Scene, beam: Beam) -> dict[str, object]:
     """One station that touches."""
-    contact = _contact(held)
+    contact = held.state.contact
     plane, spot = contact.plane, contact.spot
     force = -contact.force * plane.normal
     moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
@@ -112,17 +108,28 @@ def _row(held: Contact | Rubbed, missed: float, scene: Scene, beam: Beam) -> dic
         "residual": missed,
         "status": "ok" if missed <= _SOLVED else "diverged",
     }
-    if isinstance(held, Contact):
-        row["stability"] = margin(second_variation(contact, scene.radius))
+    law = held.stretch.panel.law
+    if not law.friction:
+        row["stability"] = stable = margin(second_variation(contact, scene.radius))
+        if not stable > 0:
+            row["status"] = "diverged"
     else:
-        slides = not held.stretch.panel.law.sticks
-        numbers = *held.state.rub, float(np.linalg.norm(held.velocity)) if slides else 0.0
+        numbers = *held.state.rub, 0.0 if law.sticks else float(np.linalg.norm(held.velocity))
         row |= dict(zip(_RUBBED, numbers, strict=True))
     return row
 
 
-def _missed(contacts: Sequence[Contact], feet: Floats, scene: Scene) -> Floats:
-    """From the clamp back to the contacts: place, arc length, distance from the body."""
+def _missed(states: Sequence[Sliding], feet: Floats, scene: Scene) -> Floats:
+    """From the clamp back to the contacts: place, arc length; phase, and distance from the body."""
+    contacts = [state.contact for state in states]
+    beyond = [
+        one.contact.arc_length - 1 if one.contact.tangent else -one.leans_in for one in states
+    ]
+    spots = [scene.body.nearest(one.on_parallel, APART) for one in contacts]
+    off = [
+        float(np.linalg.norm(spot.point - one.spot.point))
+        for spot, one in zip(spots, contacts, strict=True)
+    ]
     force = np.array([contact.force for contact in contacts])
     moment = np.sqrt(force) * [contact.loaded.moment for contact in contacts]
     alpha = np.array([contact.plane.alpha for contact in contacts])
@@ -135,7 +142,7 @@ def _missed(contacts: Sequence[Contact], feet: Floats, scene: Scene) -> Floats:
     extent = np.maximum(1.0, np.abs(feet).max(axis=1, initial=0.0))
     apart = np.abs(axis - centres).max(axis=1, initial=0.0) / extent
     shorter = np.abs(found.arc_length - arc_length)
-    return np.asarray(np.max([apart, shorter, arc_length - 1], axis=0))
+    return np.asarray(np.max([apart, shorter, beyond, off], axis=0))
 
 
 def _free(status: str) -> dict[str, object]:

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from analytic import Beam, Readings, catenary, certify, parabola, solve_contact, solve_sweep
-from analytic.checks import (
-    boundary_value_problem,
-    tip_angle_by_quadrature,
-    tip_angle_by_shooting,
-)
+from analytic.checks import boundary_value_problem, tip_angle_by_quadrature, tip_angle_by_shooting
 
 THIN = Beam(radius=0.0)
 CONTACTS = [

@@ -173,27 +173,3 @@ def test_segments_under_the_true_force_at_the_true_place(half_cell, expected):
             found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
         )
         assert np.median(off) == pytest.approx(median, rel=0.1)
-
-
-def test_at_the_tip_the_model_is_off_by_its_force():
-    """Whatever the number of segments; medians from the same program."""
-    table, _ = swept(CONTOURS["catenary"])
-    table = table[table["phase"] == "tip"]
-    force = np.hypot(table["force_x"], table["force_y"]).to_numpy()
-    for number in (40, 160):
-        found = contact_under(force, np.ones(len(table)), number, half_cell=True)
-        off = np.hypot(
-            found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
-        )
-        assert np.median(off) == pytest.approx(0.05, rel=0.1)
-        assert off.max() == pytest.approx(0.77, rel=0.1)
-
-
-def test_segments_do_not_find_the_tip():
-    """Their force is normal to the vibrissa; the tip's is not."""
-    table, given = swept(CONTOURS["catenary"])
-    tip = (table["phase"] == "tip").to_numpy()
-    given = LoadedStations(*(values[tip] for values in given))
-    found = errors(earlier.by_segments(given, 160, half_cell=True), table[tip])
-    assert np.isnan(found).mean() > 0.5
-    assert np.nanmin(found) > 0.01

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
+from analytic import InputError
 from analytic.from_clamp.correlated import NoiseFound
 from analytic.from_clamp.fitted import Fitted, likeliest
 
 GRID = 91  # noises: white, and those that remember
 
 
-def fitted(family, white, remembering=-1e3, penalty=0.0):
+def fitted(family, white, remembering=-1e3, penalty=0.0, explains=True, judged=True):
     by_noise = np.full((GRID, 1), float(remembering))
     by_noise[0] = white
     nothing = NoiseFound(np.zeros(1), np.zeros(1), 0.0, np.zeros(1, dtype=bool))
@@ -17,11 +18,12 @@ def fitted(family, white, remembering=-1e3, penalty=0.0):
         family=family,
         found={},
         misfit=1.0,
-        explains=True,
+        explains=explains,
         by_noise=by_noise,
         penalty=penalty,
         stations=100,
         noise=nothing,
+        judged=judged,
     )
 
 
@@ -49,3 +51,25 @@ def test_noise_that_remembers_does_not_excuse_a_wrong_object():
     assert wrong.bic < right.bic
     found = chosen(right, wrong)
     assert (found.family, found.rivals["circle"][1]) == ("ellipse", False)
+
+
+def test_what_cannot_be_judged_is_neither_explained_nor_refused():
+    found = chosen(fitted("circle", -100.0, explains=False, judged=False))
+    assert found.family == "circle" and not found.explains
+    with pytest.raises(InputError, match="none of them"):
+        chosen(fitted("circle", -100.0, explains=False))
+
+
+@pytest.mark.parametrize(
+    ("correlation", "lasts", "rests", "judged"),
+    [
+        (0.9, False, 20, False),
+        (0.9, False, 200, True),
+        (0.9, False, None, True),  # it is stated
+        (0.9, True, 20, True),  # no noise remembers longer than a pass
+        (0.0, False, 0, True),
+    ],
+)
+def test_noise_that_remembers_shows_its_size_off_the_contact(correlation, lasts, rests, judged):
+    noise = NoiseFound(np.array([correlation]), np.array([9.5]), 0.0, np.array([lasts]))
+    assert noise.judged_by(rests) == judged

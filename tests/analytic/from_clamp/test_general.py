@@ -1,4 +1,4 @@
-"""The contact from the clamp with friction, an elastic clamp and a natural curvature."""
+"""The contact from the clamp of a general vibrissa, and the coefficient of friction."""
 
 import math
 from dataclasses import replace
@@ -12,12 +12,15 @@ from analytic import (
     Beam,
     Case,
     InputError,
+    Readings,
     Sweep,
     catenary,
     circle,
     curvatures,
     deflected_shapes,
     ellipse,
+    estimate_friction,
+    named_case,
     parabola,
     polygon,
     reconstruct,
@@ -43,6 +46,13 @@ REAL = Case(
     clamp_stiffness=6.0,
     friction=0.25,
 )
+
+
+VARYING = {
+    "cone": Beam(radius=0.01, tip_radius=0.004),
+    "graded": Beam(flexural_rigidity=lambda s: 1 / (1 + 2 * s**2)),
+    "bowed at its end": Beam(natural_curvature=((0.0, 0.0), (0.6, -0.3), (1.0, -0.8))),
+}
 
 
 def with_readings(readings):
@@ -76,14 +86,17 @@ def assert_exact(readings):
     compliance=st.floats(0, 1),
     friction=st.floats(0, 0.7),
     radius=st.sampled_from([0.0, 0.005, 0.02]),
+    ratio=st.just(1.0) | st.floats(0.2, 1.0),
     height=st.floats(0.25, 0.6),
     size=st.floats(0.5, 2),
     kind=st.sampled_from(sorted(OBJECTS)),
     direction=st.sampled_from(["left", "right"]),
 )
-def test_exact_readings(natural, compliance, friction, radius, height, size, kind, direction):
+def test_exact_readings(
+    natural, compliance, friction, radius, ratio, height, size, kind, direction
+):
     stiffness = 1 / compliance if compliance > 1e-3 else math.inf
-    beam = Beam(radius=radius, natural_curvature=natural)
+    beam = Beam(radius=radius, tip_radius=ratio * radius or None, natural_curvature=natural)
     sweep = Sweep(24, direction=direction)
     try:
         case = Case(
@@ -96,6 +109,11 @@ def test_exact_readings(natural, compliance, friction, radius, height, size, kin
     assert_exact(readings)
 
 
+@pytest.mark.parametrize("beam", VARYING.values(), ids=VARYING)
+def test_exact_readings_of_what_varies(beam):
+    assert_exact(solve_sweep(Case(beam, named_case("catenary").profile, Sweep(40))))
+
+
 def test_in_other_units_and_to_the_right():
     beam = Beam(0.05, 2e-6, 0.25e-3, natural_curvature=8.0)
     case = Case(
@@ -106,18 +124,6 @@ def test_in_other_units_and_to_the_right():
         friction=0.25,
     )
     assert_exact(solve_sweep(case))
-
-
-def test_the_moment_says_nothing_where_the_vibrissa_is_square_to_the_force():
-    """A vibrissa curved towards the object passes that place: the contact is its tip all along."""
-    case = Case(Beam(natural_curvature=1.2), circle(1.0, lowest=(0, 0.4)), Sweep(2000))
-    readings = solve_sweep(case)
-    tip = (readings.table["phase"] == "tip").to_numpy() & with_readings(readings)
-    square = readings.values("tip_angle") - np.arctan2(
-        -readings.values("force_x"), readings.values("force_y")
-    )
-    assert np.abs(square[tip] - np.pi / 2).min() < 1e-3
-    assert missed(reconstruct(readings), readings).max() < 1e-12
 
 
 def test_a_reader_who_knows_of_no_friction_finds_the_points_but_not_the_angles():
@@ -135,45 +141,163 @@ def test_a_reader_who_knows_of_no_friction_finds_the_points_but_not_the_angles()
 
 
 @pytest.mark.slow
-def test_uncertainty_covers_the_error():
-    exact = solve_sweep(REAL)
-    noise = relative_noise(exact, 1e-2)
-    rng = np.random.default_rng(0)
-    covered = counted = 0
-    for _ in range(20):
+@pytest.mark.parametrize(
+    ("case", "level", "times", "least"),
+    [
+        (REAL, 1e-2, 20, 0.93),
+        # Of some 55 contacts three standard deviations are 0.09; half of what is stated holds two
+        # thirds.
+        (replace(REAL, beam=VARYING["cone"]), 3e-3, 1, 0.86),
+    ],
+    ids=["uniform", "cone"],
+)
+def test_uncertainty_covers_the_error(case, level, times, least):
+    """95 % of contacts of noisy readings lie within what is stated."""
+    exact = solve_sweep(case)
+    noise = relative_noise(exact, level)
+    rng, covered = np.random.default_rng(0), []
+    for _ in range(times):
         found = reconstruct(noisy(exact, noise, rng), noise)
         sure = np.isfinite(found["uncertainty"]).to_numpy() & with_readings(exact)
-        error = np.hypot(
-            found["contact_x"] - exact.values("contact_x"),
-            found["contact_y"] - exact.values("contact_y"),
-        )
-        covered += int((error <= found["uncertainty"])[sure].sum())
-        counted += int(sure.sum())
-    assert counted > 1000
-    assert 0.93 < covered / counted < 0.97
+        error = np.hypot(*(found[n] - exact.values(n) for n in ("contact_x", "contact_y")))
+        covered += list((error <= found["uncertainty"])[sure])
+    assert len(covered) > 50 * times
+    assert least < np.mean(covered) < (0.97 if times > 1 else 1.01)
 
 
 @pytest.mark.parametrize("direction", ["left", "right"])
-def test_drawn_shapes_are_curved_and_pass_through_the_contact(direction):
-    case = replace(REAL, sweep=Sweep(40, direction=direction), beam=Beam(natural_curvature=-0.8))
-    readings = solve_sweep(case)
+@pytest.mark.parametrize("beam", [Beam(natural_curvature=-0.8), VARYING["cone"]])
+def test_drawn_shapes_are_curved_and_pass_through_the_contact(beam, direction):
+    readings = solve_sweep(replace(REAL, sweep=Sweep(40, direction=direction), beam=beam))
+    table = readings.table
     x, y = deflected_shapes(readings)
     steps = np.hypot(np.diff(x), np.diff(y)).sum(axis=1)
     np.testing.assert_allclose(steps, 1.0, atol=1e-3)  # chords
-    free = (readings.table["phase"] == "free").to_numpy()
-    angle = readings.values("tip_angle")
+    free = (table["phase"] == "free").to_numpy()
     shown = np.arctan2(y[:, 64] - y[:, 63], x[:, 64] - x[:, 63])
-    assert np.abs(shown - angle)[free].max() < 0.02
-    alpha = readings.values("contact_angle")
-    centre = np.column_stack(
-        [
-            readings.values("contact_x") + 0.005 * np.sin(alpha),
-            readings.values("contact_y") - 0.005 * np.cos(alpha),
-        ]
-    )
-    # Point 64 is the contact.
-    gap = np.hypot(x[:, 64] - centre[:, 0], y[:, 64] - centre[:, 1])
-    assert gap[with_readings(readings)].max() < 1e-7
-    kappa = curvatures(readings, x, y)
-    np.testing.assert_array_equal(kappa[:, 65:], -0.8)
-    np.testing.assert_allclose(kappa[free, :], -0.8)
+    assert np.abs(shown - table["tip_angle"])[free].max() < 0.02
+    alpha, radius = table["contact_angle"], beam.radius_at(table["contact_arc_length"].to_numpy())
+    axis_x = table["contact_x"] + radius * np.sin(alpha)
+    axis_y = table["contact_y"] - radius * np.cos(alpha)
+    # Point 64 is the contact; of a cone by Runge-Kutta in 64 steps, 5e-9 off.
+    assert np.hypot(x[:, 64] - axis_x, y[:, 64] - axis_y)[with_readings(readings)].max() < 1e-7
+    if not beam.varies:
+        kappa = curvatures(readings, x, y)
+        np.testing.assert_array_equal(kappa[:, 65:], -0.8)
+        np.testing.assert_allclose(kappa[free, :], -0.8)
+
+
+def swept(friction, natural=0.0, stiffness=np.inf, radius=0.005, stations=200, tip=None):
+    beam = Beam(radius=radius, natural_curvature=natural, tip_radius=tip)
+    body, held = circle(1.0, lowest=(0, 0.4)), {"clamp_stiffness": stiffness, "friction": friction}
+    return solve_sweep(Case(beam, body, Sweep(stations), **held))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    ("friction", "natural", "stiffness", "radius"),
+    [
+        (0.0, 0.0, np.inf, 0.005),
+        (0.3, 0.0, np.inf, 0.0),
+        (0.6, -0.4, 6.0, 0.02),
+        (0.05, 0.3, 3.0, 0.005),
+    ],
+)
+def test_exact_readings_show_it_exactly(friction, natural, stiffness, radius, mirrored):
+    readings = swept(friction, natural, stiffness, radius)
+    found = estimate_friction((readings.mirrored() if mirrored else readings).with_friction(0.0))
+    assert found.coefficient == pytest.approx(friction, abs=1e-12)
+    assert found.stations > 20 and found.uncertainty < 1e-3
+
+
+def test_a_cone_shows_it_too():
+    """What is wrong with the friction assumed moves the contact by the radius times that."""
+    readings = swept(0.3, 0.0, np.inf, 0.01, 30, 0.004)
+    found = estimate_friction(readings.with_friction(0.0))
+    assert found.coefficient == pytest.approx(0.3, abs=1e-11)  # observed 3e-12
+
+
+def errors(level, tip, times):
+    """Of noisy sweeps, each over its own uncertainty."""
+    exact = swept(0.3, stations=100, tip=tip).with_friction(0.0)
+    noise, rng = relative_noise(exact, level), np.random.default_rng(1)
+    for _ in range(times):
+        found = estimate_friction(noisy(exact, noise, rng), noise)
+        yield (found.coefficient - 0.3) / found.uncertainty
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("level", "tip", "times"),
+    [
+        (1e-3, None, 100),
+        (3e-2, None, 100),
+        (1e-2, 0.002, 12),
+        pytest.param(1e-2, 0.002, 100, marks=pytest.mark.trial),
+    ],
+)
+def test_uncertainty_is_as_large_as_estimates_scatter(level, tip, times):
+    """The mean of squares of errors over deviations is 1 +- 0.4 of twelve; of 100 95 % are within.
+
+    Of an uncertainty half as large it is four times as much; at the least noise it is twice as
+    large as it has to be.
+    """
+    found = np.array([*errors(level, tip, times)])
+    assert (0.3 if tip else 0.2) < np.mean((1.96 * found) ** 2) < 2.0
+    assert times < 100 or (np.abs(found) <= 1).sum() >= 89
+
+
+def test_passes_are_pooled():
+    """Four, to both sides: half of one's uncertainty."""
+    left = swept(0.3, stations=60)
+    ways = [one.with_friction(0.0) for one in (left, left.mirrored())]
+    noise = relative_noise(ways, 1e-2)
+    passes = [noisy(one, noise, seed) for seed, one in enumerate(2 * ways)]
+    one, four = (estimate_friction(some, noise) for some in (passes[:1], passes))
+    assert four.uncertainty == pytest.approx(one.uncertainty / 2, rel=0.3)
+    assert abs(four.coefficient - 0.3) < 2 * four.uncertainty
+    assert four.passes.consistent and one.passes is None
+    assert not estimate_friction([*passes, swept(0.0, stations=60)]).passes.consistent
+
+
+def test_only_phase_b_shows_it():
+    raised = replace(named_case("tip-only"), friction=0.3)
+    with pytest.raises(InputError, match="stations of Phase B = 0: must be 5 or more"):
+        estimate_friction(solve_sweep(raised))
+    with pytest.raises(InputError, match="readings"):
+        estimate_friction(raised)
+
+
+def remembering(readings, level, seed):
+    """With AR(0.9) noise that nobody states."""
+    return noisy(readings, relative_noise(readings, level), seed, memory=0.9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_that_remembers_makes_no_phase_b(seed):
+    """Tips that it seems to lay down gave -0.47 +- 0.18, or 0.17 +- 0.02 instead of 0.3."""
+    short = solve_sweep(Case(Beam(), circle(0.3, lowest=(0, 0.8)), Sweep(200), friction=0.14))
+    with pytest.raises(InputError, match="stations of Phase B"):
+        estimate_friction(remembering(short, 0.01, seed))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_next_to_no_load_says_nothing_of_friction(seed):
+    """It gave -1.0 +- 0.3, or -22."""
+    long = Sweep(400, 0.5, -0.9)
+    case = Case(Beam(radius=0.002), circle(0.34, lowest=(0.05, 0.7)), long, friction=0.2)
+    found = estimate_friction(remembering(solve_sweep(case), 0.003, seed))
+    assert found.coefficient == pytest.approx(0.2, abs=1.5 * found.uncertainty)
+    assert found.uncertainty < 0.03
+
+
+@pytest.mark.parametrize(("radius", "height"), [(0.5, 0.5), (0.4, 0.6)])
+def test_hum_next_to_no_load_says_nothing_of_friction(radius, height):
+    """It gave -0.03 and 0.03 instead of 0.2, each +- 0.01."""
+    case = Case(Beam(radius=0.002), circle(radius, lowest=(0.05, height)), Sweep(300), friction=0.2)
+    exact, turn = solve_sweep(case), 2 * np.pi * np.arange(300) / 17.3
+    sizes = relative_noise(exact, 0.004).items()
+    hum = {n: exact.values(n) + size * np.sin(turn + i) for i, (n, size) in enumerate(sizes)}
+    found = estimate_friction(Readings(exact.table.assign(**hum), exact.beam))
+    assert found.coefficient == pytest.approx(0.2, abs=found.uncertainty)
+    assert found.uncertainty < 0.01

@@ -1,6 +1,8 @@
-"""Readings as rigs and users give them, and as files keep them."""
+"""Readings as users give them, as files keep them, and what values show of themselves."""
 
 import os
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
@@ -11,9 +13,23 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
-from analytic import Beam, InputError, Readings, named_case, solve_sweep
-from tests.analytic.problem.given import damage, refusal
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    calibrate,
+    circle,
+    find_events,
+    named_case,
+    solve_sweep,
+)
+from analytic.space import FootPath, SpatialCase, solve_space, sphere
+from compare import compare
+from tests.analytic.problem.given import refusal
 
 RIG = "foot_x,force_x,force_y,moment_z\n"
 FOUR = {
@@ -103,15 +119,6 @@ def test_whatever_holds_numbers_is_a_reading(column):
     assert sweep.table["moment_z"].dtype == float
 
 
-def test_a_table_of_ones_own():
-    """Any index, integer positions, repeated and unsorted rows: they are somebody's measurement."""
-    table = pd.DataFrame({**FOUR, "foot_x": [1, 0, 0]}, index=["a", "b", "b"])
-    sweep = Readings.of(table)
-    assert sweep.values("foot_x").tolist() == [1, 0, 0]
-    assert sweep.table.index.tolist() == [0, 1, 2]
-    assert table.index.tolist() == ["a", "b", "b"]
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -154,31 +161,12 @@ def test_a_small_file_of_too_many_cells(tmp_path):
     assert "cells" in refusal(Readings.read, path)
 
 
-@pytest.mark.slow
-@seed(2)
-@settings(max_examples=150, deadline=None)
-@given(st.data())
-def test_any_damage_to_a_file_is_one_line(tmp_path_factory, data):
-    """It still is a sweep, or one line says that it is not."""
-    suffix = data.draw(st.sampled_from(["csv", "parquet"]))
-    path = tmp_path_factory.mktemp("damaged") / f"sweep.{suffix}"
-    Readings.of(FOUR, provenance={"events": {"snap_off": None}}).write(path)
-    damage(data, path, times=4)
-    try:
-        sweep = Readings.read(path)
-    except InputError as error:
-        assert "\n" not in str(error)
-    else:
-        assert np.isfinite(sweep.values("foot_x")).all()
-        assert repr(sweep)
-
-
 CELLS = st.one_of(st.floats(), st.integers(), st.booleans(), st.none(), st.text(max_size=5))
 COLUMNS = st.sampled_from([*FOUR, "phase", "status", "tip_angle"])
 
 
 @seed(3)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.dictionaries(COLUMNS, st.lists(CELLS, max_size=4)))
 def test_any_columns_are_readings_or_one_line(columns):
     try:
@@ -198,8 +186,6 @@ def test_shown_on_one_screen():
 
 
 def test_plot_draws_the_three_readings():
-    from matplotlib.figure import Figure
-
     sweep = Readings.of({**FOUR, "moment_z": [0, np.nan, 0.4]}, source="rig <b>$$")
     axes = sweep.plot(Figure().subplots(3))
     np.testing.assert_array_equal(axes[0].lines[0].get_ydata(), FOUR["force_x"])
@@ -236,3 +222,78 @@ def test_threads_that_ask_at_once_get_the_same_numbers():
         for table, provenance in found:
             assert provenance is readings.provenance
             assert np.shares_memory(table["force_x"].to_numpy(), made)
+
+
+def shown() -> list[object]:
+    case = named_case("catenary")
+    path = FootPath([[1, 0.2], [-1, 0.2]], stations=12)
+    in_space = SpatialCase(body=sphere(1.0, centre=(0, 1.4, 0)), path=path)
+    swept, spatial = solve_sweep(case), solve_space(in_space)
+    fitted = calibrate(swept, case, ["flexural_rigidity", "friction"], {"force_x": 1e-2})
+    found = [case, named_case("whisk-catenary"), in_space, swept, spatial]
+    found += [find_events(case.profile, case.beam), fitted]
+    return [*found, compare(swept, swept), compare(spatial, spatial)]
+
+
+@pytest.mark.slow  # nine pictures
+def test_a_line_or_a_screen_and_tiles_with_a_picture():
+    for value in shown():
+        assert len(repr(value)) < 1000, repr(value)
+        assert "object at" not in repr(value)
+        assert "functools" not in repr(value)
+        page = value._repr_html_()
+        assert page.startswith("<div")
+        assert "data:image/png;base64," in page
+        assert len(page) < 150_000
+
+
+def test_a_case_shows_all_its_objects():
+    both = Case(profile=[circle(0.2, (0.3, 0.5)), circle(0.1, (-0.5, 0.6))])
+    assert "circle of radius 0.2" in repr(both) and "circle of radius 0.1" in repr(both)
+
+
+def test_what_is_drawn_is_in_the_units_of_the_case():
+    outline, way, *_ = named_case("catenary").plot(Figure().subplots()).lines
+    assert outline.get_ydata().min() == pytest.approx(0.2)
+    np.testing.assert_allclose(way.get_ydata(), 0.0)
+    whisk = solve_sweep(named_case("whisk-catenary"))
+    line = whisk.plot(Figure().subplots(3))[0].lines[0]
+    np.testing.assert_array_equal(line.get_xdata(), whisk.clamp_angle)
+
+
+def test_events_lie_on_the_readings():
+    case = named_case("parabola")
+    axes = Figure().subplots(3)
+    solve_sweep(case).plot(axes)
+    find_events(case.profile, case.beam).plot(axes)
+    curve, *events, _ = axes[1].lines  # next to the snap-off, the last, the force has no bound
+    for event in events:
+        at, value = event.get_xdata()[0], event.get_ydata()[0]
+        near = np.argmin(np.abs(curve.get_xdata() - at))
+        beside = curve.get_ydata()[[max(near - 1, 0), near, min(near + 1, 199)]]
+        assert abs(beside - value).min() < 0.02 * curve.get_ydata().max()
+
+
+def test_who_only_solves_loads_no_pictures():
+    code = (
+        "import sys; from analytic import named_case, solve_sweep; "
+        "repr(solve_sweep(named_case('parabola'))); "
+        "print([name for name in ('matplotlib', 'mujoco') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "near"),
+    [
+        (lambda: named_case("catenery"), "did you mean catenary?"),
+        (
+            lambda: Readings.of({name: [1, 0] for name in ("footx", *CLAMP_READINGS)}),
+            "add foot_x (is it footx?)",
+        ),
+        (lambda: named_case("q"), "`compare.load_case` reads a TOML file"),
+    ],
+)
+def test_errors_suggest_the_nearest_name(wrong, near):
+    assert near in refusal(wrong)

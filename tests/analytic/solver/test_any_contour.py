@@ -1,16 +1,16 @@
-"""Sweeps along random contours, and the kinds of sweep that are hardest to get right."""
+"""Random contours; the accelerator against the general solver; what is hardest to get right."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic import (
+    CLAMP_READINGS,
     Beam,
     Case,
-    Profile,
     Sweep,
+    catenary,
     certify,
     circle,
     ellipse,
@@ -19,8 +19,14 @@ from analytic import (
     parabola,
     polygon,
     solve_sweep,
+    two_circles,
 )
 from analytic.problem.support import Support
+from analytic.problem.table import as_table
+from analytic.solver.general import sweep as general
+from analytic.solver.general.columns import Units
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.residuals import residuals
 from tests.fuzz.contours import KINDS, trial
 
 THIN = Beam(radius=0.0)
@@ -43,17 +49,20 @@ def test_random_contours(kind, seeds):
         assert (outcome == "refused") or (outcome, found) == ("solved", []), seed
 
 
-@pytest.mark.parametrize("seed", [31000000007497, 31000000014387])
-def test_a_last_fold_next_to_the_end_of_reach(seed):
-    """Past a nearly sharp edge x0 dips once more: missed, the snap-off was up to 0.03 L early."""
-    assert trial("nearly polygon", seed) == ("solved", [])
-
-
-def test_a_step_as_large_as_the_rotation_itself():
-    """At a first contact that is all but straight the excess rotation is next to nothing."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert trial("through points", 62000000001569) == ("solved", [])
+@pytest.mark.parametrize(
+    ("kind", "seed"),
+    [
+        # Past a nearly sharp edge x0 dips once more: missed, the snap-off was up to 0.03 L early.
+        ("nearly polygon", 31000000007497),
+        ("nearly polygon", 31000000014387),
+        # At a first contact that is all but straight the excess rotation is next to nothing.
+        ("through points", 62000000001569),
+        # Where a rounding of the slope angle moves the contact by 1e-13 L, Newton's steps go on.
+        ("nearly polygon", 51000000000187),
+    ],
+)
+def test_contours_found_at_random(kind, seed):
+    assert trial(kind, seed) == ("solved", [])
 
 
 @pytest.mark.parametrize("event", ["first_contact", "phase_b_start", "phase_b_end", "snap_off"])
@@ -82,33 +91,20 @@ def test_the_load_grows_with_the_way_from_first_contact(closer):
     assert -last["force_x"] == pytest.approx(3 * (touch.foot_x - last["foot_x"]), abs=5e-14)
 
 
-def test_a_needle_is_touched_within_the_vibrissa():
-    """Two changes of phase lie within a hundredth of a degree."""
-    readings = solve_sweep(Case(THIN, ellipse((8.5645, 0.050834), (0.0, 0.45))))
+@pytest.mark.parametrize(
+    ("needle", "stations"),
+    [
+        # Two changes of phase lie within a hundredth of a degree.
+        (ellipse((8.5645, 0.050834), (0.0, 0.45)), 200),
+        # A span's end that has turned by more than half a turn is no span, though it may fit.
+        (ellipse((10.0, 0.003), (0.3, 0.8)), 800),
+    ],
+)
+def test_a_needle_is_touched_within_the_vibrissa(needle, stations):
+    readings = solve_sweep(Case(THIN, needle, Sweep(stations)))
     assert (readings.table["status"] == "ok").all()
     assert readings.table["contact_arc_length"].max() <= 1 + 1e-14
     assert certify(readings).max(axis=None) < EXACT
-
-
-@pytest.mark.parametrize("radius", [1e2, 1e4])
-def test_a_nearly_flat_object(radius):
-    readings = solve_sweep(Case(THIN, circle(radius, (0.0, 0.5))))
-    touching = readings.table["phase"] != "free"
-    assert touching.sum() > 150
-    assert (readings.table["status"] == "ok").all()
-
-
-def test_an_object_that_ends_has_a_corner_under_a_thick_vibrissa_too():
-    """A short arc between two corners: the contact turns about each end, radius or not."""
-    arc = Profile(lambda a: np.sin(a), lambda a: 1.4 - np.cos(a), (-0.3, 0.3))
-    for radius in (0.0, 0.02):
-        beam = Beam(radius=radius)
-        profile = replace(arc, eta=lambda a, r=radius: 1.4 + r - np.cos(a))
-        readings = solve_sweep(Case(beam, profile))
-        assert certify(readings).max(axis=None) < EXACT
-        assert (readings.table["status"] == "ok").all()
-        angle = readings.values("contact_angle")
-        assert np.nanmax(angle) > 0.31
 
 
 @pytest.mark.parametrize(
@@ -117,10 +113,6 @@ def test_an_object_that_ends_has_a_corner_under_a_thick_vibrissa_too():
 )
 def test_residuals_show_a_wrong_answer(column):
     """One part in ten thousand off, in the table that is then checked."""
-    from analytic.solver.general.columns import Units
-    from analytic.solver.general.states import Vibrissa
-    from analytic.solver.residuals import residuals
-
     exact = solve_sweep(named_case("catenary"))
     columns = {name: exact.table[name].to_numpy() for name in exact.table}
     columns[column] = columns[column] * (1 + 1e-4)
@@ -137,3 +129,55 @@ def test_a_contour_that_ends_below_the_tip_is_first_touched_by_the_side() -> Non
     assert first.contact_arc_length == pytest.approx(0.6, abs=1e-15)
     assert (first.foot_x, first.contact_x) == pytest.approx((0.71, 0.7), abs=1e-15)
     assert first.force_x == first.force_y == first.moment_z == 0
+
+
+NUMBERS = (*CLAMP_READINGS, "contact_angle", "contact_arc_length", "contact_x", "contact_y")
+# Next to an event readings change like the root of the distance from it; both solvers are good to
+# some roundings of the foot position.
+ALIKE = 4e-13
+NEAR = 1e-6  # L, from an event
+
+
+def random_contour(kind, rng):
+    low = rng.uniform(0.15, 0.75)
+    if kind == "catenary":
+        return catenary(rng.uniform(0.3, 2.0), low - 1)
+    if kind == "circle":
+        return circle(rng.uniform(0.1, 2.0), (rng.uniform(-1, 1), low))
+    if kind == "ellipse":
+        return ellipse(rng.uniform(0.2, 2.0, 2), (0.0, low))
+    if kind == "two-circles":
+        return two_circles(*rng.uniform(0.2, 2.0, 2), (0.0, low))
+    angle = np.sort(rng.uniform(-np.pi, 0, 7))
+    points = np.column_stack([np.cos(angle), 1 + np.sin(angle)]) * rng.uniform(0.3, 1.5)
+    return polygon(np.vstack([points, [0.0, 3.0]]) + np.array([0.0, low]))
+
+
+def compared(case):
+    fast, solved = solve_sweep(case), general.solve(case)
+    table, other = fast.table, as_table(solved.columns)
+    assert (table["phase"] == other["phase"]).all()
+    assert (table["status"] == other["status"]).all()
+    events, length = dict(fast.provenance["events"]), case.beam.length
+    del events["out_of_plane"]
+    for name, place in events.items():
+        where = solved.events[name]
+        assert (place is None) == (where is None), name
+        if place is not None:
+            assert place / length == pytest.approx(where, abs=1e-11), name
+    places = [place for place in events.values() if place is not None]
+    apart = np.abs(case.foot_x[:, None] - places).min(axis=1) > NEAR * length
+    return table[apart], other[apart]
+
+
+@pytest.mark.parametrize("kind", ["catenary", "circle", "ellipse", "two-circles", "polygon"])
+@pytest.mark.parametrize("seed", [0, 1, pytest.param(range(2, 20), marks=pytest.mark.slow)])
+def test_random_contours_by_the_general_solver(kind, seed):
+    for each in np.atleast_1d(seed):
+        rng = np.random.default_rng(each)
+        beam = Beam(length=0.3, flexural_rigidity=2.0, radius=0.3 * rng.uniform(0, 0.02))
+        contour = random_contour(kind, rng).scaled(beam.length)
+        table, other = compared(Case(beam, contour, Sweep(40)))
+        for column in NUMBERS:
+            size = np.nanmax(np.abs(table[column]), initial=1e-9)
+            np.testing.assert_allclose(table[column], other[column], rtol=0, atol=1e-10 * size)

@@ -1,6 +1,11 @@
-"""The sweep as a whole: balance, scaling, continuity, reconstruction, and where it ends."""
+"""Sweeps: events, scaling, limits; many at once are what each is alone."""
 
+import copy
+import itertools
+import pickle
+import tracemalloc
 from dataclasses import fields, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -14,18 +19,26 @@ from analytic import (
     Beam,
     Case,
     Event,
+    InputError,
+    Profile,
+    Readings,
     Sweep,
+    Unsolved,
     catenary,
     circle,
     ellipse,
     find_events,
     named_case,
     parabola,
+    polygon,
     solve_contact,
     solve_sweep,
+    solve_sweeps,
+    through_points,
     two_circles,
 )
 from analytic.problem.columns import SCHEMA, WORDS
+from analytic.solver.sweep import solve_plain
 
 HEIGHTS = st.floats(0.05, 0.8)
 OBJECTS = st.one_of(
@@ -57,21 +70,6 @@ def test_table(case, exact):
     assert table["phase"].iloc[[0, -1]].tolist() == ["free", "free"]
 
 
-def test_agrees_with_solve_contact(case, exact):
-    """The sweep's Newton iteration and the root at a given angle are different routes."""
-    touching = exact.table[exact.table["phase"] != "free"]
-    solved = solve_contact(case.profile, touching["contact_angle"], case.beam)
-    assert (solved["phase"].to_numpy() == touching["phase"].to_numpy()).all()
-    # Right after first contact the height hardly determines the force, which goes with the root of
-    # 1 - eta; a station's height is its contour's up to 16 roundings.
-    sag = 1 - case.centreline.place(touching["contact_angle"].to_numpy())[1]
-    doubt = np.where(touching["phase"] == "tip", 8 * np.finfo(float).eps / sag, 0.0)
-    for column in ("foot_x", *CLAMP_READINGS, "contact_arc_length", "contact_x", "contact_y"):
-        size = np.abs(touching[column].to_numpy())
-        error = np.abs(solved[column].to_numpy() - touching[column].to_numpy())
-        assert (error < 1e-12 * size.max() + doubt * size).all(), column
-
-
 def test_phases_follow_each_other(case_name, exact):
     phase = exact.table["phase"]
     order = phase[phase != phase.shift()].tolist()
@@ -98,40 +96,6 @@ def test_events_stand_where_the_sweep_has_them(case, exact):
     assert events.phase_b_start.contact_arc_length == pytest.approx(1, abs=1e-14)
 
 
-@settings(max_examples=60, deadline=None)
-@given(OBJECTS)
-def test_balance_of_forces_and_moments(profile):
-    """M = F_y (xi - x0) - F_x eta about the contact, at every station of any sweep."""
-    case = Case(profile=profile, sweep=Sweep(stations=60))
-    table = solve_sweep(case).table
-    touching = table[table["phase"] != "free"]
-    moment = (
-        touching["force_y"] * (touching["contact_x"] - touching["foot_x"])
-        - touching["force_x"] * (touching["contact_y"])
-    )
-    assert np.abs(moment - touching["moment_z"]).max() < 1e-12 * (1 + touching["force_y"].max())
-    criterion = 2 * touching["force_y"] - touching["moment_z"] ** 2
-    force = np.hypot(touching["force_x"], touching["force_y"])
-    tangent = touching["phase"] == "tangent"
-    assert (np.abs(criterion / force)[tangent] < 1e-13).all()
-    assert (criterion[~tangent] > 0).all()
-
-
-@settings(max_examples=40, deadline=None)
-@given(OBJECTS)
-def test_foot_advances_up_to_the_fold(profile):
-    """x0 falls steadily along the contour from first contact to snap-off, and turns there."""
-    beam = Beam()
-    events = find_events(profile, beam)
-    first, snap = events.first_contact.contact_angle, events.snap_off.contact_angle
-    angles = np.linspace(first, snap, 200)[1:]
-    foot_x = solve_contact(profile, angles, beam)["foot_x"]
-    assert (np.diff(foot_x) < 0).all()
-    beyond = solve_contact(profile, snap - np.array([1e-5, 2e-5]), beam)
-    reachable = beyond["status"] == "ok"
-    assert (beyond["foot_x"][reachable] >= events.snap_off.foot_x).all()
-
-
 @pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(OBJECTS, st.floats(1e-3, 1e3), st.floats(1e-6, 1e6))
@@ -142,17 +106,10 @@ def test_results_scale(profile, length, rigidity):
     other = Case(beam, profile.scaled(length), one.sweep)
     a, b = solve_sweep(one).table, solve_sweep(other).table
     assert (a["phase"] == b["phase"]).all()
-    for column, unit in {
-        "foot_x": length,
-        "force_x": beam.force_unit,
-        "force_y": beam.force_unit,
-        "moment_z": beam.moment_unit,
-        "contact_arc_length": length,
-        "contact_x": length,
-        "contact_y": length,
-        "contact_angle": 1.0,
-        "tip_angle": 1.0,
-    }.items():
+    units = dict.fromkeys(("foot_x", "contact_arc_length", "contact_x", "contact_y"), length)
+    units |= dict.fromkeys(("force_x", "force_y"), beam.force_unit)
+    units |= {"moment_z": beam.moment_unit, "contact_angle": 1.0, "tip_angle": 1.0}
+    for column, unit in units.items():
         scale = np.nanmax(np.abs(a[column])) * unit
         # Close to the fold a rounding of foot_x grows like the root of its distance.
         np.testing.assert_allclose(b[column], a[column] * unit, rtol=1e-6, atol=1e-9 * scale)
@@ -171,8 +128,6 @@ def test_thickness_is_the_parallel_curve():
 
 
 def test_a_profile_of_callables_is_as_good_as_a_family():
-    from analytic import Profile
-
     family = catenary(0.5, -0.8)
     plain = Profile(xi=family.xi, eta=family.eta, alpha_range=(-1.2, 1.2))
     case = named_case("catenary")
@@ -181,3 +136,132 @@ def test_a_profile_of_callables_is_as_good_as_a_family():
     np.testing.assert_allclose(
         a[list(CLAMP_READINGS)].to_numpy(), b[list(CLAMP_READINGS)].to_numpy(), atol=1e-9
     )
+
+
+CORNERS = [(-1.5, 1.2), (-0.6, 0.5), (-0.1, 0.35), (0.2, 0.34), (0.8, 0.6), (1.2, 1.3)]
+STIFF = Beam(length=50.0, flexural_rigidity=2e3, radius=0.2)
+
+
+def own_xi(radius, alpha):
+    return np.dot(radius, np.sin(alpha))
+
+
+def own_eta(radius, alpha):
+    return 0.4 + np.dot(radius, 1 - np.cos(alpha))
+
+
+def mixed():
+    """Contours, vibrissae, stations and directions of every kind."""
+    yield named_case("catenary")
+    yield Case(STIFF, catenary(0.5, -0.8).scaled(50.0), Sweep(70))
+    yield Case(profile=catenary(0.3, -0.7), sweep=Sweep(40, direction="right"))
+    yield named_case("two-circles")
+    yield Case(profile=two_circles(1.0, 0.3, (0.1, 0.6)), sweep=Sweep(31))
+    yield Case(profile=polygon(CORNERS), sweep=Sweep(90))
+    yield named_case("rubbing")
+    yield Case(Beam(natural_curvature=-0.3), circle(1.0, (0.0, 0.4)), Sweep(20))
+    yield Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(50, start=2.0, stop=0.9))
+    yield Case(Beam(radius=0.0), circle(0.6, (3.0, 0.5)), Sweep(50))
+    yield Case(profile=ellipse((1.0, 0.3), (0.0, 0.5)), sweep=Sweep(60, direction="right"))
+    yield Case(profile=parabola(0.5, 0.5), sweep=Sweep(2))
+    yield named_case("tip-only")
+    for low in (0.4, 0.3):
+        points = [(x, low + x * x / 3) for x in np.linspace(-2, 2, 15)]
+        yield Case(profile=through_points(points))
+    for radius in (0.9, 1.3):  # a user's own family, which takes one number at a time
+        xi, eta = partial(own_xi, radius), partial(own_eta, radius)
+        yield Case(profile=Profile(xi=xi, eta=eta, alpha_range=(-1.1, 1.3)), sweep=Sweep(30))
+
+
+def test_mixed_cases_are_what_each_is_alone():
+    cases = list(mixed())
+    for case, found in zip(cases, solve_sweeps(cases), strict=True):
+        assert isinstance(found, Readings)
+        alone = solve_sweep(case)
+        assert found.beam == alone.beam
+        assert found.source == alone.source
+        events, expected = (dict(x.provenance["events"]) for x in (found, alone))
+        assert events.keys() == expected.keys()
+        for name, place in expected.items():
+            assert events[name] == (None if place is None else pytest.approx(place, rel=1e-12))
+        for readings in (found, alone):
+            assert readings.provenance["digest"] == case.digest
+        columns = [name for name in alone.table if not name.startswith("residual")]
+        pd.testing.assert_frame_equal(
+            # Near a fold readings change like the root of the foot position's rounding.
+            found.table[columns], alone.table[columns], rtol=1e-10, atol=1e-12 * case.beam.length,
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("error", [ArithmeticError, AttributeError, RuntimeWarning])
+def test_a_case_that_fails_says_why_and_stops_no_other(error):
+    calls = itertools.count()
+
+    def broken(alpha):
+        if next(calls) > 200:
+            raise error("this contour is not known here")
+        return 1.5 - np.cos(alpha)
+
+    profile = Profile(xi=np.sin, eta=broken, alpha_range=(-1.2, 1.2))
+    sound = named_case("catenary")
+    bad = Case(profile=profile, sweep=Sweep(30))
+    calls = itertools.count(1000)
+    first, failed, other, last = solve_sweeps([sound, bad, "catenary", sound])
+    assert isinstance(first, Readings)
+    assert isinstance(last, Readings)
+    assert isinstance(failed, Unsolved)
+    assert failed.case is bad
+    assert isinstance(failed.error, error)
+    assert failed.reason == "this contour is not known here"
+    assert isinstance(other, Unsolved)
+    assert isinstance(other.error, InputError)
+
+
+def test_a_bug_of_the_batch_itself_is_seen(monkeypatch):
+    """It is no case's, so that no case can say it."""
+
+    def broken(cases):
+        if len(cases) > 1:
+            raise TypeError("of many")
+        return solve_plain(cases)
+
+    monkeypatch.setattr("analytic.solver.sweep.solve_plain", broken)
+    assert next(iter(solve_sweeps([named_case("catenary")]))).source == "analytic"
+    with pytest.raises(TypeError, match="of many"):
+        list(solve_sweeps([named_case("catenary"), named_case("parabola")]))
+
+
+@pytest.mark.slow
+def test_cases_are_taken_as_they_are_needed():
+    """And the memory is that of a batch, however many there are."""
+    taken = 0
+
+    def endless():
+        nonlocal taken
+        for radius in itertools.cycle(np.linspace(0.5, 2.0, 7)):
+            taken += 1
+            yield Case(profile=circle(float(radius), (0.0, 0.4)), sweep=Sweep(400))
+
+    found = solve_sweeps(endless())
+    assert taken == 0
+    tracemalloc.start()
+    try:
+        for _ in itertools.islice(found, 50):
+            pass
+        few = tracemalloc.get_traced_memory()[1]
+        for _ in itertools.islice(found, 200):
+            pass
+        assert tracemalloc.get_traced_memory()[1] < 1.3 * few
+    finally:
+        tracemalloc.stop()
+    assert taken < 350
+
+
+def test_the_table_of_solved_readings_survives_a_copy_before_it_is_asked_for() -> None:
+    for copied in (copy.copy, copy.deepcopy, lambda found: pickle.loads(pickle.dumps(found))):
+        fresh = solve_sweep(named_case("catenary"))
+        again = copied(fresh)
+        assert again.snap_off == fresh.snap_off
+        pd.testing.assert_frame_equal(again.table, fresh.table)
+    with pytest.raises(AttributeError, match="chart"):
+        fresh.chart  # noqa: B018

@@ -19,7 +19,8 @@ from analytic.space import (
 from analytic.space.from_clamp.hull import volume
 from analytic.space.problem.bodies.support import spread
 from analytic.space.problem.readings import SENSED_IN_SPACE
-from tests.analytic.space.test_fit_body import noisy, sizes
+from tests.analytic.noisy import noisy
+from tests.analytic.space.test_fit_body import sizes
 
 MIDDLE = np.array([0.0, 1.3, 0.0])
 _, TURN = np.linalg.eigh([[1.0, 0.4, 0.2], [0.4, 2.0, -0.5], [0.2, -0.5, 3.0]])

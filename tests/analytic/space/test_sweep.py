@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from analytic import (
+    CLAMP_READINGS,
     Beam,
     Case,
     InputError,
     Sweep,
     catenary,
     circle,
-    ellipse,
     polygon,
     solve_contact,
     solve_sweep,
@@ -64,13 +64,7 @@ def known(name, tangent):
     return swept(body, points, 25, tangent=tangent)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(n, marks=pytest.mark.slow if n in ("polyhedron", "prism") else ())
-        for n in BODIES
-    ],
-)
+@pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("tangent", [UPRIGHT, LEANING])
 def test_every_state_satisfies_the_equations_of_the_rod(name, tangent):
     readings = known(name, tangent)
@@ -104,17 +98,10 @@ def test_a_prism_across_the_path_is_the_planar_problem(contour, radius):
     space = swept(prism(contour), [[5.0, 0.0], [-2.0, 0.0]], 60, beam)
     held = (flat.values("contact_angle") > 0) & space.touching
     assert held.sum() >= 15
-    for ours, theirs in (
-        ("force_x", "force_x"),
-        ("force_y", "force_y"),
-        ("moment_z", "moment_z"),
-        ("contact_x", "contact_x"),
-        ("contact_y", "contact_y"),
-        ("contact_arc_length", "contact_arc_length"),
-        ("contact_angle", "contact_angle"),
-    ):
-        size = np.nanmax(np.abs(flat.values(theirs)[held]))
-        assert np.abs(space.values(ours) - flat.values(theirs))[held].max() < 1e-13 * size, ours
+    names = "contact_x", "contact_y", "contact_arc_length", "contact_angle"
+    for name in (*CLAMP_READINGS, *names):
+        expected = flat.values(name)[held]
+        assert np.abs(space.values(name)[held] - expected).max() < 1e-13 * np.abs(expected).max()
     assert (space.table["phase"][held] == flat.table["phase"][held]).all()
     for nothing in ("force_z", "moment_x", "moment_y", "contact_z"):
         assert np.abs(space.values(nothing)[held]).max() < 1e-15
@@ -151,19 +138,6 @@ def test_on_a_sphere_the_foot_is_in_the_plane_of_contact_and_axis():
     assert kind == "slip-off"
     assert np.abs(foot).max() < 1e-11
     assert (central.table["status"] == "slipped off").sum() > 5
-
-
-def test_a_spheroid_gives_what_its_meridian_gives():
-    """Upright, passed beside its axis by an upright vibrissa."""
-    readings = swept(ellipsoid((1.0, 0.7, 1.0), (0.0, 1.1, 0.0)), [[1.3, 0.3], [-1.5, 0.3]], 50)
-    on = readings.touching & (np.linalg.norm(readings.values(*FORCE), axis=1) > 0.1)
-    assert on.sum() > 15
-    meridian = ellipse(semi_axes=(1.0, 0.7), lowest=(0.0, 0.4))
-    planar = solve_contact(meridian, readings.values("contact_angle")[on])
-    away = np.hypot(readings.values("foot_x"), readings.values("foot_z"))[on]
-    assert np.abs(planar["foot_x"] - away).max() < 1e-13
-    force = np.linalg.norm(readings.values(*FORCE)[on], axis=1)
-    assert np.allclose(force, np.hypot(planar["force_x"], planar["force_y"]), rtol=1e-12, atol=0)
 
 
 @pytest.mark.slow
@@ -231,7 +205,7 @@ def test_a_path_into_the_body_is_refused():
         swept(sphere(1.0, (0.0, 0.1, 0.0)), [[1.3, 0.2], [-1.5, 0.2]])
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_the_nearest_point_of_a_prism_is_the_nearest_of_its_section(seed):
     """Of a polygon whose ends are at different heights, and the upright sides above them."""
     draw = np.random.default_rng(seed)

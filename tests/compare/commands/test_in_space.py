@@ -54,6 +54,13 @@ def test_the_frame_is_the_reason_and_not_the_fit(swept, tmp_path, family):
         assert wrong not in last
 
 
+def test_no_family_of_bodies_is_refused_before_anything_is_written(swept, tmp_path):
+    swept.write(tmp_path / "one.parquet")
+    words = ("one.parquet", "--fit", "circle", "--out", "o")
+    vibrissa("reconstruct", *words, cwd=tmp_path).refused("sphere, ellipsoid")
+    assert not (tmp_path / "o").exists()
+
+
 def test_export_asks_for_an_object_in_the_plane(tmp_path):
     (tmp_path / "case.toml").write_text(BODY)
     done = vibrissa("export", "case.toml", cwd=tmp_path)

@@ -194,6 +194,13 @@ def test_two_objects_are_no_clamp_that_gives_way():
     assert "two objects" not in (compare(one, one).likely or "")
 
 
+def test_a_moment_about_another_point_is_named():
+    exact = solved()
+    moment = exact.values("moment_z") + exact.values("foot_x") * exact.values("force_y")
+    found = compare(exact, changed(exact, moment_z=moment))
+    assert found.likely == "moment_z is about the world's origin, not the foot"
+
+
 def test_a_load_that_noise_hides_is_no_sensor_without_one():
     """A soft drive swings under the sensor: force_x alone jumped, and "the clamp reads no load"."""
     exact = solved()

@@ -32,7 +32,7 @@ def test_two_must_leave_ten_times_less_than_one(monkeypatch, times, said):
     table = pd.DataFrame({"at": np.linspace(1, -1, STATIONS)})
     beam = SimpleNamespace(length=1.0)
     offset = SimpleNamespace(uncertainty=0.0)
-    found = SimpleNamespace(reference=SimpleNamespace(beam=beam), offset=offset)
+    found = SimpleNamespace(reference=SimpleNamespace(beam=beam, running=""), offset=offset)
     text = module.one_or_two(found, table, true, seen, np.ones(3), np.zeros(3))
     assert text == said
 

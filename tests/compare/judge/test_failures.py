@@ -44,6 +44,18 @@ def test_the_headline_names_what_failed(rows, value, level, said):
         assert compare(spoilt, spoilt).alignment.counts["dropped"] == 0
 
 
+def test_stations_that_are_not_trusted_are_not_called_without_a_load():
+    """All but one of those in contact chattered, and the clamp was said to read no load there."""
+    exact = exact_sweep("parabola")
+    touching = (exact.table["phase"] != "free").to_numpy()
+    idle = np.arange(200) == touching.argmax()
+    status = np.where(touching & ~idle, "chattering", "ok")
+    table = exact.table.drop(columns="phase").assign(status=status)
+    table.loc[idle, [*CLAMP_READINGS]] = 0.0
+    found = compare(exact, replace(exact, table=table, provenance={}))
+    assert "no station in contact in both" in found.worst.found
+
+
 def test_a_missing_snap_off_is_named():
     exact = exact_sweep("parabola")
     short = replace(exact, table=exact.table.iloc[:150].reset_index(drop=True), provenance={})

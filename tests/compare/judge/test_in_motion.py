@@ -56,6 +56,16 @@ def test_a_mean_that_takes_in_the_snap_off_is_not_compared(stations):
     assert not compare(exact, replace(mean, table=stiffer)).agrees
 
 
+@pytest.mark.parametrize(("stations", "named"), [(10, True), (200, False)])
+def test_stations_so_far_apart_that_their_means_are_off_are_named(stations, named):
+    """With ten MuJoCo disagrees by 1.5e-2, and agrees over a tenth of the way between them."""
+    exact = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations)))
+    about = {"motion": {"speed": 0.01, "damping_ratio": 0.05, "average": 1.0}}
+    stiffer = exact.table.assign(**{n: 1.02 * exact.values(n) for n in CLAMP_READINGS})
+    found = compare(exact, Readings(stiffer, exact.beam, "means", {**exact.provenance, **about}))
+    assert ("[motion] average = 0.1" in "".join(found.remarks)) == named
+
+
 def test_a_fast_motion_is_allowed_no_more_than_shows_a_wrong_beam():
     limits = Tolerances().suited_to(moving(speed=5.0))
     assert limits.rms == 1e-2

@@ -1,4 +1,4 @@
-"""Sweeps in motion past an object that rubs, against the closed form with friction."""
+"""Sweeps in motion past what rubs, in the plane and in space, against the closed form."""
 
 from dataclasses import replace
 
@@ -7,8 +7,9 @@ import pytest
 
 from analytic import CLAMP_READINGS, Beam, InputError, Sweep, named_case, solve_sweep
 from analytic.problem.table import says
-from analytic.space import FootPath, SpatialCase, sphere
-from mujoco_models import Motion, Settings, SpatialSettings, simulate_motion
+from analytic.space import FootPath, SpatialCase, cylinder, solve_space, sphere
+from analytic.space.problem.readings import FORCE, FRICTION, MOMENT
+from mujoco_models import Motion, Settings, SpatialSettings, simulate_motion, simulate_space
 
 CASE = replace(named_case("catenary"), friction=0.2, sweep=Sweep(60))
 SLOW = Motion(
@@ -31,32 +32,6 @@ def rms(exact, moved):
         float(np.sqrt(((b[name] - a[name])[keep] ** 2).mean()) / a[name][keep].abs().max())
         for name in CLAMP_READINGS
     ]
-
-
-# A pyramid rubs with all of its coefficient only while the contact all but leaves the object: while
-# the surfaces overlap, its two edges across the sweep carry a part of the force, and do not rub. So
-# it chatters, and its mean over all of the way is that of friction if it does so fast.
-PYRAMID = replace(SLOW, cone="pyramidal", timestep=0.001, contact_stiffness=4e3, average=1.0)
-
-
-@pytest.mark.trial  # minutes; the parabola, and how a pyramid rubs on its first fifth, are below
-@pytest.mark.parametrize(
-    ("name", "motion", "limit"),
-    [
-        ("catenary", SLOW, 4e-3),  # observed 2.3e-3; shallow-catenary 2.0e-3
-        ("two-circles", SLOW, 5e-3),  # 3.6e-3
-        ("tip-only", SLOW, 5e-3),  # 4.0e-3
-        ("parabola", PYRAMID, 3e-3),  # 1.4e-3; of the five cases at most 2.6e-3
-        ("tip-only", PYRAMID, 3e-3),  # 1.8e-3
-    ],
-)
-def test_named_cases(name, motion, limit):
-    case = replace(named_case(name), friction=0.2)
-    case = replace(case, sweep=replace(case.sweep, stations=60))
-    moved = simulate_motion(case, motion, Settings(segments=40, obstacle="primitive"))
-    assert max(rms(solve_sweep(case), moved)) < limit
-    chatters = (moved.table["status"] == "chattering").mean()
-    assert chatters < 0.1 if motion is SLOW else chatters > 0.8
 
 
 @pytest.mark.slow
@@ -132,3 +107,55 @@ def test_where_the_foot_is_slow_the_contact_creeps_and_says_so():
         less = rubs[touching] < 0.95 * 0.3
         assert (less == says(found.table["status"], "creeping")[touching]).all()
         assert less.any() == creeping
+
+
+WAY = FootPath([[1.0, 0.3], [-0.6, 0.3]], stations=40)
+BALL = SpatialCase(Beam(radius=0.002), body=sphere(1.0, centre=(0, 1.4, 0)), path=WAY, friction=0.3)
+IN_SPACE = Motion(speed=0.02, timestep=0.002, contact_stiffness=1e3, cone="elliptic")
+N20 = SpatialSettings(segments=20)
+
+
+def _apart(case: SpatialCase, motion: Motion) -> tuple[float, float]:
+    """Root mean square of the worst reading over the largest, and friction's largest error."""
+    exact, found = solve_space(case), simulate_motion(case, motion, N20)
+    ok = (exact.table["status"] == "ok") & (found.table["status"] == "ok")
+    worst = 0.0
+    for names in (FORCE, MOMENT):
+        known = exact.values(*names)[ok]
+        missed = found.values(*names)[ok] - known
+        worst = max(worst, np.sqrt((missed**2).mean(axis=0)).max() / np.abs(known).max())
+    held = (ok & (exact.table["phase"] == "tangent")).to_numpy()
+    rubs = found.values(*FRICTION)[held] - exact.values(*FRICTION)[held]
+    return worst, float(np.abs(rubs).max())
+
+
+@pytest.mark.slow
+def test_friction_past_a_sphere() -> None:
+    # Of 20 segments, contacts of 1e3 EI/L^3 and a radius whose moment the closed form leaves out:
+    # 2.9e-3 and 4e-3 were measured.
+    readings, friction = _apart(BALL, IN_SPACE)
+    assert readings < 4e-3
+    assert friction < 1e-2
+
+
+@pytest.mark.slow
+def test_friction_past_a_cylinder() -> None:
+    body = cylinder(0.6, (0, 1.0, 0), (0.2, 0.1, 1))
+    way = FootPath([[1.1, 0.3], [0.1, 0.2]], tangent=(0.1, 1, 0.05), stations=20)
+    readings, _ = _apart(replace(BALL, body=body, path=way), IN_SPACE)
+    assert readings < 8e-3
+
+
+def test_what_motion_in_space_cannot_is_refused_in_a_line() -> None:
+    bent = FootPath([[1.0, 0.3], [0.5, 0.3], [0.5, 0.0]], stations=10)
+    for case, motion, settings, word in (
+        (BALL, replace(IN_SPACE, cone="pyramidal"), N20, "cone"),
+        (replace(BALL, path=bent), IN_SPACE, N20, "points"),
+        (BALL, IN_SPACE, SpatialSettings(segments=20, joints="universal"), "beam"),
+        (BALL, replace(IN_SPACE, timestep=0.02), N20, "timestep"),
+        (replace(BALL, beam=Beam(radius=0.0)), IN_SPACE, N20, "radius"),
+    ):
+        with pytest.raises(InputError, match=word):
+            simulate_motion(case, motion, settings)
+    with pytest.raises(InputError, match="friction"):
+        simulate_space(BALL, N20)

@@ -32,7 +32,7 @@ stations = 60
 density = "7850 kg/m^3"
 speed = 0.05
 """
-NAMED = ("catenary", "parabola", "two-circles", "shallow-catenary", "tip-only")
+NAMED = ("catenary", "two-circles", "tip-only")
 CASES = {
     "wire": WIRE,
     "tapered": WIRE.replace("MORE", 'tip_radius = "0.15 mm"'),

@@ -45,10 +45,10 @@ class Chain:
             f'<site name="clamp" {self.site}/>{rigid}{bodies}{"</body>" * count}</body>'
         )
 
-    def write(self, folder):
-        path = folder / "whisker.xml"
-        # Some 4e3 EI/L^3: hard enough, and it does not chatter.
-        path.write_text(
+    def write(self, folder, *changes):
+        """Into a folder, with pieces of the text that are others: `(old, new)`."""
+        # Contacts of some 4e3 EI/L^3: hard enough, and it does not chatter.
+        text = (
             f'<mujoco model="planted"><compiler angle="radian"/>'
             f'<option timestep="0.01" integrator="discrete" gravity="{self.gravity}"/>'
             f'<default><geom type="capsule" size="{self.radius!r}" condim="1" '
@@ -56,6 +56,11 @@ class Chain:
             f"<worldbody>{self.text()}{self.beside}</worldbody>"
             f"<sensor>{self.sensors}</sensor></mujoco>"
         )
+        for old, new, *count in changes:
+            assert old in text
+            text = text.replace(old, new, *count)
+        path = folder / "whisker.xml"
+        path.write_text(text)
         return path
 
 

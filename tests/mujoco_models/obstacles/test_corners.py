@@ -76,20 +76,11 @@ def test_sharp_ends_of_a_gently_bowed_side():
     assert np.sqrt(np.mean(errors(bowed, 20, stations=20) ** 2, axis=1)).max() < 4e-3
 
 
-@pytest.fixture(scope="module")
-def cube(tmp_path_factory):
-    """The section of a cube's file."""
-    path = tmp_path_factory.mktemp("cube") / "cube.stl"
-    trimesh.creation.box((1, 1, 1)).export(path)
-    return mesh_section(path, offset=(0.0, 0.9))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("beam", [available_beams()[0], available_beams()[1]])
-@pytest.mark.parametrize("shape", ["square", "triangle", "cube"])
-def test_the_order_is_two(shape, beam, request):
+@pytest.mark.parametrize("profile", [SQUARE, TRIANGLE], ids=["square", "triangle"])
+def test_the_order_is_two(profile, beam):
     """At every station, in every reading: none of them jumps here, and none is left out."""
-    profile = {"square": SQUARE, "triangle": TRIANGLE}.get(shape) or request.getfixturevalue(shape)
     segments = np.array([20, 40, 80, 160])
     found = [errors(profile, int(n), beam, stations=60) for n in segments]
     rms = np.array([np.sqrt(np.mean(error**2, axis=1)) for error in found])
@@ -137,7 +128,7 @@ def test_a_corner_slides_past_a_joint(beam, stiffness):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("corners", [3, 5, 12, 48, 200])
+@pytest.mark.parametrize("corners", [5, 48])
 def test_any_number_of_corners(corners):
     rng = np.random.default_rng(corners)
     angle = np.sort(rng.uniform(-np.pi / 2, np.pi / 2, corners))
@@ -146,12 +137,10 @@ def test_any_number_of_corners(corners):
 
 
 TWELVE = polygon(
-    [
-        *[(-0.1681, 1.3834), (-0.1058, 0.7262), (-0.1028, 0.7174), (-0.0962, 0.6994)],
-        *[(-0.0661, 0.6375), (-0.0177, 0.5911), (-0.0048, 0.5882), (0.0224, 0.5942)],
-        *[(0.0254, 0.5959), (0.1201, 0.7797), (0.1501, 0.932), (0.1709, 1.1906)],
-    ]
-)
+    [(-0.1681, 1.3834), (-0.1058, 0.7262), (-0.1028, 0.7174), (-0.0962, 0.6994),
+     (-0.0661, 0.6375), (-0.0177, 0.5911), (-0.0048, 0.5882), (0.0224, 0.5942),
+     (0.0254, 0.5959), (0.1201, 0.7797), (0.1501, 0.932), (0.1709, 1.1906)]
+)  # fmt: skip
 
 
 def test_a_tip_stays_on_its_facet_as_long_as_that_holds_it():

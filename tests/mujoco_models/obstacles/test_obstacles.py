@@ -1,6 +1,7 @@
-"""Meshes: those of files as they are, exact polygons, and how near everything is."""
+"""Obstacles: meshes of files, exact polygons, and the smooth primitive, which has no facets."""
 
 from dataclasses import replace
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -22,7 +23,7 @@ from analytic import (
     solve_sweep,
 )
 from compare import compare
-from mujoco_models import Settings, simulate_sweep
+from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.model.spec import add_options
 from mujoco_models.obstacles.file_mesh import FileMesh
 from mujoco_models.obstacles.kinds import place
@@ -197,6 +198,17 @@ def with_a_bead(prism, radius):
     return spec.compile()
 
 
+def pressed(prism, model, facet, share, distance):
+    """MuJoCo's contacts of the bead at a distance from a facet, and the facet's normal."""
+    begin, end = prism.vertices[facet : facet + 2]
+    normal = np.array([end[1] - begin[1], begin[0] - end[0]])
+    normal /= np.hypot(*normal)
+    data = mujoco.MjData(model)
+    data.qpos[:2] = begin + share * (end - begin) + distance * normal
+    mujoco.mj_forward(model, data)
+    return data, normal
+
+
 @pytest.mark.parametrize(
     ("body", "points"),
     [(circle(0.0383, (0.0, 0.4476)), 1000), (ellipse((0.094, 10.4), (0.0, 0.339)), 800),
@@ -212,18 +224,12 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
     radius, draw = 1.3e-3, np.random.default_rng(3)
     prism = Prism.of(Case(Beam(radius=radius), body), points)
     model = with_a_bead(prism, radius)
-    data = mujoco.MjData(model)
     turn = np.pad(np.diff(prism.facet_angles), (0, 1), mode="edge")
     for window in range(prism.windows):
         prism.show(model, 0, window)
         for facet in draw.choice(own_facets(prism, window), 40):
-            begin, end = prism.vertices[facet : facet + 2]
-            normal = np.array([end[1] - begin[1], begin[0] - end[0]])
-            normal /= np.hypot(*normal)
             depth = 10 ** draw.uniform(-9, -5)
-            data.qpos[:2] = begin + draw.uniform(0.1, 0.9) * (end - begin)
-            data.qpos[:2] += (radius - depth) * normal
-            mujoco.mj_forward(model, data)
+            data, normal = pressed(prism, model, facet, draw.uniform(0.1, 0.9), radius - depth)
             exact = prism.clearance(data.qpos[:2])[0] - radius
             deepest = data.contact.dist.argmin()
             # Single precision over the size of a window: 4e-7 along the lying needle's flank.
@@ -236,27 +242,17 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
 @pytest.mark.parametrize("count", [2, 3, 4, 5])
 def test_no_contact_is_missed_on_a_body_of_few_corners(count):
     """A climb from corner to corner finds none at 11 in 100 places on a prism of three."""
-    draw = np.random.default_rng(count)
+    radius, draw = 1e-3, np.random.default_rng(count)
     slopes = np.sort(draw.uniform(-1, 1, size=count - 1))
-    edges = draw.uniform(0.1, 0.4, size=(count - 1, 1))
-    lower = np.cumsum(
-        np.vstack([[[-0.4, 0.5]], edges * np.column_stack([np.cos(slopes), np.sin(slopes)])]),
-        axis=0,
-    )
-    radius = 1e-3
+    edges = draw.uniform(0.1, 0.4, (count - 1, 1)) * np.array([np.cos(slopes), np.sin(slopes)]).T
+    lower = np.cumsum(np.vstack([[[-0.4, 0.5]], edges]), axis=0)
     prism = Prism(lower, (-1.2, 1.2), exact=True, radius=radius, corner_radius=1e-6)
     model = with_a_bead(prism, radius)
-    data = mujoco.MjData(model)
     for window in range(prism.windows):
         prism.show(model, 0, window)
         for _ in range(100):
-            edge = draw.integers(count - 1)
-            begin, end = lower[edge : edge + 2]
-            outward = np.array([end[1] - begin[1], begin[0] - end[0]]) / np.hypot(*(end - begin))
-            depth = 10 ** draw.uniform(-7, -3)
-            data.qpos[:2] = begin + draw.uniform(0.05, 0.95) * (end - begin)
-            data.qpos[:2] += (radius - depth) * outward
-            mujoco.mj_forward(model, data)
+            edge, depth = draw.integers(count - 1), 10 ** draw.uniform(-7, -3)
+            data, _ = pressed(prism, model, edge, draw.uniform(0.05, 0.95), radius - depth)
             assert data.ncon > 0
             # Single precision of places as far as 1 L.
             assert data.contact.dist.min() == pytest.approx(-depth, abs=1e-6)
@@ -306,3 +302,68 @@ def test_the_distance_of_a_needle_from_far_away():
     exact = [obstacle.clearance(point)[0] for point in points]
     for window in range(0, obstacle.windows, 10):
         np.testing.assert_allclose(obstacle.gap(window, points)[0], exact, atol=1e-6)
+
+
+CASES = {
+    "circle": Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=30)),
+    "ellipse": Case(profile=ellipse((1.0, 0.5), lowest=(0.0, 0.4)), sweep=Sweep(stations=30)),
+    "two-circles": Case(profile=named_case("two-circles").profile, sweep=Sweep(stations=30)),
+}
+FLOOR = 5e-5  # rms, relative: what the contacts' softness and the beads' spacing leave
+
+
+@cache
+def errors(name, beam, segments):
+    simulated = simulate_sweep(
+        CASES[name], Settings(beam=beam, segments=segments, obstacle="primitive")
+    )
+    assert (simulated.table["status"] == "ok").all()
+    found = compare(solve_sweep(CASES[name]), simulated)
+    return np.array([found.disagreement[reading].rms for reading in CLAMP_READINGS])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_agrees_with_the_closed_form(name):
+    # Observed at most 5.4e-4, in force_y; the mesh has 1e-3.
+    assert (errors(name, "chain", 40) < 8e-4).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("beam", "name"),
+    [*(("chain", name) for name in CASES), *((beam, "circle") for beam in available_beams()[1:])],
+)
+def test_second_order_until_the_floor(beam, name):
+    """Single doublings scatter about 2: the beads' spacing is bounded by more than N."""
+    segments = np.array([10, 20, 40, 80, 160] if beam == "chain" else [10, 20, 40, 80])
+    found = np.array([errors(name, beam, int(n)) for n in segments])
+    slopes = -np.polyfit(np.log(segments), np.log(found), 1)[0]
+    assert (slopes > 1.8).all(), (found, slopes)
+    assert (slopes < 2.4).all(), (found, slopes)
+    if beam == "chain":
+        assert (found[-1] < FLOOR).all(), found[-1]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_contacts_lie_on_the_contour(name):
+    """As deep in it as the load presses them, and with its normal there."""
+    case = CASES[name]
+    table = simulate_sweep(case, Settings(obstacle="primitive")).table
+    table = table[table["phase"] == "tip"]  # one bead, so that nothing is averaged
+    at = case.profile.at(table["contact_angle"].to_numpy())
+    across = np.hypot(table["contact_x"] - at.xi, table["contact_y"] - at.eta)
+    depth = np.hypot(table["force_x"], table["force_y"]) / Settings().contact_stiffness
+    # MuJoCo puts a contact half its depth inside; the circles are 5e-5 rad apart.
+    assert (np.abs(across - depth / 2) < 1e-8).all()
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        polygon([(-1.0, 0.8), (-0.5, 0.5), (0.3, 0.4), (1.0, 0.9)]),
+        Profile(np.sin, lambda alpha: 1.4 - np.cos(alpha), (-0.3, 1.0)),  # ends within reach
+    ],
+)
+def test_corners_have_no_circle(profile):
+    with pytest.raises(InputError, match="'mesh', or a contour without corners"):
+        simulate_sweep(Case(profile=profile), Settings(obstacle="primitive"))

@@ -6,11 +6,11 @@ import numpy as np
 import trimesh
 
 from analytic import InputError
-from analytic.space import FootPath, SpatialCase, convex_mesh
+from analytic.space import SpatialCase, convex_mesh
+from tests.fuzz import space
 
 FILES = ("ball.stl", "ellipsoid.obj", "capsule.ply")
 _LOWEST = 0.4  # L above the way of the foot
-_BEFORE, _BEYOND = 0.4, 0.6  # L of the way, before the body and past it
 
 
 def body(file: str) -> trimesh.Trimesh:
@@ -29,16 +29,10 @@ def oblique(file: str, seed: int, folder: Path, stations: int = 60) -> SpatialCa
     """A way under it in any direction, beside its middle, with the clamp leaning to any side."""
     draw, mesh = np.random.default_rng(seed), body(file)
     mesh.export(folder / file)
-    solid = convex_mesh(folder / file)
-    wide = float(mesh.extents[[0, 2]].max()) / 2
+    solid, wide = convex_mesh(folder / file), float(mesh.extents[[0, 2]].max()) / 2
     while True:
-        angle, aside = draw.uniform(0, 2 * np.pi), draw.uniform(-0.6, 0.6) * wide
-        along = np.array([np.cos(angle), np.sin(angle)])
-        middle = aside * np.array([-along[1], along[0]])
-        points = [middle - (wide + _BEFORE) * along, middle + (wide + _BEYOND) * along]
-        x, z = draw.uniform(-0.2, 0.2, 2)
+        path = space.oblique(draw, wide, stations)
         try:
-            path = FootPath(points, tangent=(x, 1, z), stations=stations)
             return SpatialCase(body=solid, path=path, name=f"{file} {seed}")
         except InputError:  # out of reach
             continue

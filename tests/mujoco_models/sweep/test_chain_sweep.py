@@ -50,20 +50,6 @@ def test_clamp_balances_the_contact(simulated):
     assert (free[list(CLAMP_READINGS)].abs() < 1e-9).all(axis=None)
 
 
-@pytest.mark.slow
-def test_second_order_in_the_number_of_segments():
-    """Facets fine enough not to show beside the beam, at 1.2e-4 of force_x."""
-    errors = []
-    for n in (10, 20, 40):
-        found = compare(
-            solve_sweep(named_case("two-circles")),
-            simulated_sweep("two-circles", Settings(segments=n)),
-        )
-        errors.append(max(found.disagreement[name].rms for name in CLAMP_READINGS))
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert (orders > 1.8).all(), (errors, orders)
-
-
 def test_the_naive_clamp_is_found_out():
     """A rigid first link makes the chain too stiff, by 1/N; the comparison must not let it pass."""
     name = "catenary"

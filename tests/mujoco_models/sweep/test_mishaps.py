@@ -10,20 +10,13 @@ import trimesh
 
 from analytic import Case, InputError, Readings, Sweep, circle, mesh_section, named_case
 from compare.commands.main import main
-from compare.study.grid.file import load_study
-from compare.study.grid.plan import Plan
-from compare.study.work.perform import perform
 from mujoco_models import DivergedError, Settings, simulate_sweep
 from mujoco_models.model.model import BeamModel
+from mujoco_models.sweep.sweep import set_out
 
 CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))
 QUICK = Settings(segments=8, obstacle="primitive")
 BAD_INPUT = 2  # the command's exit code
-STUDY = """
-    study = { case = "catenary" }
-    sweep.stations = 40
-    mujoco = { segments = 10, contour_points = 800 }
-"""
 
 
 @pytest.fixture
@@ -86,20 +79,14 @@ def test_an_interrupted_sweep_keeps_its_stations(direction):
     with pytest.raises(KeyboardInterrupt):
         simulate_sweep(case, QUICK, interrupted_after(7), kept.append)
     whole = simulate_sweep(case, QUICK).table
-    np.testing.assert_array_equal(kept[0].table["force_y"], whole["force_y"].iloc[:7])
-
-
-def test_nothing_is_kept_of_no_stations():
-    kept = []
+    np.testing.assert_array_equal(kept.pop().table["force_y"], whole["force_y"].iloc[:7])
     with pytest.raises(KeyboardInterrupt):
-        simulate_sweep(CASE, QUICK, interrupted_after(1), kept.append)
-    assert not kept
+        simulate_sweep(case, QUICK, interrupted_after(1), kept.append)
+    assert not kept  # of no stations
 
 
 def test_a_motion_that_explodes_is_an_error(monkeypatch, tmp_path):
     """MuJoCo itself sets a bad state back to the straight beam and only warns."""
-    from mujoco_models.sweep.sweep import set_out
-
     monkeypatch.chdir(tmp_path)  # where MuJoCo puts its log
     model = set_out(CASE, QUICK).model
     model.data.qpos[:] = 1e12
@@ -139,8 +126,6 @@ def test_a_fault_that_the_solver_does_not_know_costs_bounded_effort(fault, monke
 
 def test_mujoco_has_room_for_six_thousand_contacts():
     """Of a vibrissa bent round an object: its own choice of memory ended in a fatal error."""
-    from mujoco_models.sweep.sweep import set_out
-
     case = named_case("catenary")
     case = replace(case, beam=replace(case.beam, natural_curvature=0.5))
     model = set_out(case, Settings(segments=160, contour_points=400)).model
@@ -174,15 +159,6 @@ def test_command_line_keeps_a_diverged_sweep(vibrissa, not_a_number, tmp_path, a
     partial = Readings.read(tmp_path / "mujoco-chain.partial.parquet")
     assert partial.table["status"].iloc[-1] == "diverged"
     assert not (tmp_path / "mujoco-chain.parquet").exists()
-
-
-def test_a_study_calls_it_diverged(not_a_number, tmp_path):
-    (tmp_path / "grid.toml").write_text(STUDY)
-    plan = Plan.of(load_study(str(tmp_path / "grid.toml")))
-    (run,) = plan
-    row = perform(plan.study.recipe, run).row
-    assert row["outcome"] == "diverged"
-    assert "station" in row["reason"]
 
 
 def test_what_mujoco_cannot_compile_is_one_line(tmp_path):

@@ -1,14 +1,16 @@
-"""At rest only springs and contacts count: nothing that belongs to the way there."""
+"""At rest only springs and contacts count: nothing of the way there, nor of MuJoCo's steps."""
 
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
+import mujoco
 import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, named_case
 from mujoco_models import Settings, available_beams, simulate_sweep
+from mujoco_models.model.model import ROUNDING
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sweep import run_sweep, set_out
 from tests.conftest import simulated_sweep
@@ -47,6 +49,16 @@ def swept(beam):
     return case, settings, simulate_sweep(case, settings)
 
 
+def assert_same(found, expected, settings, end):
+    """All at rest, in the same states: out of balance by the tolerance, with levers of order L."""
+    assert (found.table["status"] == "ok").all()
+    for name in CLAMP_READINGS:
+        scale = 1 + np.abs(expected.values(name)).max()
+        error = np.abs(found.values(name) - expected.values(name))
+        assert error.max() < 10 * settings.tolerance * scale, name
+    assert abs(found.snap_off - expected.snap_off) < end
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("usual", available_beams(), indirect=True)
 @pytest.mark.parametrize("factor", [0.1, 10])
@@ -55,13 +67,7 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
     case, settings, expected = usual
     monkeypatch.setattr("mujoco_models.model.spec.add_options", changed(quantity, factor))
     found = simulate_sweep(case, settings)
-    assert (found.table["status"] == "ok").all()
-    # Both are out of balance by up to the tolerance; levers are of the order of L.
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        assert error.max() < 10 * settings.tolerance * scale, name
-    assert abs(found.snap_off - expected.snap_off) < 2e-5  # two of the smallest steps
+    assert_same(found, expected, settings, 2e-5)  # two of the smallest steps
 
 
 VARIED = {
@@ -88,20 +94,15 @@ VARIED = {
 FAST = ("stiffening_of_facets", "forecasts")
 
 
-def kind(i, constant, beam, side):
-    """Either side of every constant, and every constant with every beam; the rest is a trial."""
-    if (i + beam + side) % 2:
-        return pytest.mark.trial
-    return () if constant in FAST else pytest.mark.slow
-
-
+# Either side of every constant, and every constant with every beam.
 @pytest.mark.parametrize(
     ("usual", "constant", "side"),
     [
-        pytest.param(name, constant, side, marks=kind(i, constant, beam, side))
+        pytest.param(name, constant, side, marks=() if constant in FAST else pytest.mark.slow)
         for beam, name in enumerate(available_beams())
         for i, constant in enumerate(VARIED)
         for side in (0, 1)
+        if (i + beam + side) % 2 == 0
     ],
     indirect=["usual"],
 )
@@ -110,14 +111,8 @@ def test_no_constant_of_the_way_shows(usual, constant, side):
     case, settings, expected = usual
     varied = replace(Numerics(), **{constant: VARIED[constant][side]})
     found = run_sweep(case, settings, numerics=varied)
-    assert (found.table["status"] == "ok").all()
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        # Two states out of balance by up to the tolerance, as above.
-        assert error.max() < 10 * settings.tolerance * scale, name
     # Observed: 6e-5 by the stiffening, 1.3e-5 by the smallest step, 0 by all others.
-    assert abs(found.snap_off - expected.snap_off) < 1e-4
+    assert_same(found, expected, settings, 1e-4)
 
 
 @pytest.mark.slow
@@ -127,12 +122,7 @@ def test_how_convex_the_step_is_past_a_smooth_contour_does_not_show(stiffening):
     case, settings = named_case("parabola"), Settings(obstacle="primitive")
     expected = simulated_sweep("parabola", settings)
     found = run_sweep(case, settings, numerics=Numerics(stiffening=stiffening))
-    assert (found.table["status"] == "ok").all()
-    for name in CLAMP_READINGS:
-        scale = 1 + np.abs(expected.values(name)).max()
-        error = np.abs(found.values(name) - expected.values(name))
-        assert error.max() < 10 * settings.tolerance * scale, name
-    assert abs(found.snap_off - expected.snap_off) < 1e-4  # observed 4e-5
+    assert_same(found, expected, settings, 1e-4)  # observed 4e-5
 
 
 @pytest.mark.parametrize("contact_stiffness", [1e4, 1e5, 1e7])
@@ -161,3 +151,65 @@ def test_newtons_method_is_quadratic_however_soft_the_contact(contact_stiffness)
     assert len(ratios) > 15
     # With the old force instead it is 1e3 / contact_stiffness: 0.1 with the softest.
     assert np.median(ratios) < 1e-3
+
+
+@pytest.fixture(scope="module", params=available_beams())
+def resting(request):
+    """A model at rest in contact, its state, and the joint angles that it then has."""
+    case = named_case("catenary")
+    walk = set_out(case, Settings(beam=request.param, segments=20))
+    for foot_x in case.foot_x[20:90:5]:
+        walk.go_to(float(foot_x))
+    model = walk.model
+    angles = model.beam.angles(model.data)
+    assert walk.doubt is None
+    assert model.contacts().loaded.any()
+    return model, model.pose, angles
+
+
+@pytest.mark.parametrize("turn", [0.0, 1e-6])
+def test_the_balance_is_that_of_mujocos_inverse_dynamics(resting, turn):
+    """Without accelerations; `mj_inverse` says what else would have to act."""
+    model, pose, angles = resting
+    found = model.imbalance(pose, angles - turn)
+    moments, sensed = model.moments().copy(), model.data.sensordata.copy()
+    assert (turn > 0) == (np.abs(found).max() > 1e-3)  # not a comparison of zeros
+    model.data.qacc[:] = 0
+    mujoco.mj_inverse(model.model, model.data)
+    scale = np.abs(model.elastic_moments()).max() + np.abs(found).max()
+    np.testing.assert_allclose(-model.data.qfrc_inverse, moments, atol=1e-13 * scale)
+    np.testing.assert_allclose(model.data.sensordata, sensed, atol=1e-12 * np.abs(sensed).max())
+
+
+def test_what_is_relieved_is_rounding_of_depths_and_no_more(resting):
+    """What turns by rounding make of depths is relieved; of a thousand times as much, that part."""
+    model, pose, angles = resting
+    most = model.contact_stiffness * ROUNDING
+    for turn, hidden in (1e-14, True), (1e-11, False):
+        model.imbalance(pose, angles - turn)
+        static = model.moments()
+        pressed, sensed = model.data.efc_force.copy(), model.data.sensordata.copy()
+        found = model.relieved()
+        assert (np.abs(found).max() < 1e-8) == hidden
+        loaded = model.data.efc_force > 0
+        assert (loaded == (pressed > 0)).all()
+        given = model.data.efc_force - pressed
+        assert np.abs(given).max() <= most * (1 + 1e-9) + 1e-15 * pressed.max()
+        pulled = given @ model.data.efc_J.reshape(len(given), -1)
+        np.testing.assert_allclose(model.moments(), static + pulled, atol=1e-12)
+        # The clamp's forces are those of the relieved contacts.
+        assert 0 < np.abs(model.data.sensordata - sensed)[:2].max() <= most * loaded.sum()
+        assert model.discrepancy() < 1e-8 + len(angles) * np.abs(found).max()
+
+
+def test_mujocos_forward_dynamics_relieves_the_same(resting):
+    """It lets contacts give way to accelerations: what is out of balance at rest is no more."""
+    model, pose, angles = resting
+    model.imbalance(pose, angles - 1e-14)
+    static = np.abs(model.moments()).max()
+    mujoco.mj_forward(model.model, model.data)
+    assert np.abs(model.moments()).max() < static
+    forces = model.data.sensordata.copy()
+    model.imbalance(pose, angles - 1e-14)
+    model.relieved()
+    np.testing.assert_allclose(model.data.sensordata, forces, atol=static)

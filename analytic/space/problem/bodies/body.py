@@ -62,21 +62,6 @@ class Body(ABC):
             Point, normal, distance and how the normal turns.
         """
 
-    def feature(self, spot: Spot) -> "Body":
-        """What a contact stays on while nothing happens to it.
-
-        Parameters
-        ----------
-        spot : Spot
-            Of the body.
-
-        Returns
-        -------
-        Body
-            Of a mesh the face, the edge or the corner, as if it had no end; else the body.
-        """
-        return self
-
     @abstractmethod
     def scaled(self, factor: float) -> "Body":
         """The body enlarged about the origin, to change its unit of length.

@@ -143,9 +143,6 @@ class Polyhedron(Body):
         both = np.intersect1d(one, other)
         return bool((self.normals[both] == self.normals[face]).all())
 
-    def feature(self, spot: Spot) -> Feature:
-        return Feature.of(spot)
-
     def features(self, point: Floats, off: float = 0.0) -> tuple[list[Feature], list[Feature]]:
         """Faces at a point of the surface, or that miss it by `off`, and the edges between them."""
         on = np.abs(self.normals @ point - self.heights) < self._rounding + off

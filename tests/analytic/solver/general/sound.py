@@ -1,10 +1,26 @@
-"""What holds of every sweep of a general vibrissa."""
+"""What holds of every sweep of a general vibrissa, and what references are held against."""
+
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
-from analytic import CLAMP_READINGS, certify, reconstruct, solve_sweep
+from analytic import CLAMP_READINGS, catenary, certify, circle, parabola, reconstruct, solve_sweep
 
 READ = ("force_x", "force_y", "moment_z")
+FORCES = {"F_Ax": "force_x", "F_Ay": "force_y", "M_Az": "moment_z"}
+PLACES = {"alpha": "contact_angle", "s1": "contact_arc_length", "contact_x": "contact_x"}
+EXACT = {"rtol": 1e-11, "atol": 1e-11}
+PROFILES = {
+    "catenary(0.5,-0.8)": catenary(0.5, -0.8),
+    "parabola(0.5,0.5)": parabola(0.5, 0.5),
+    "circle(1,(0,0.4))": circle(1.0, lowest=(0, 0.4)),
+}
+
+
+def rows(name):
+    """Those of `tests/data`, made by other programs."""
+    return pd.read_csv(Path(__file__).parents[3] / "data" / f"{name}.csv")
 
 
 def assert_sound(case):

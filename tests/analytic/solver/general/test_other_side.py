@@ -1,9 +1,6 @@
 """A vibrissa that is curved towards the object and lies down on its other side."""
 
-from pathlib import Path
-
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic import Beam, Case, Sweep, catenary, certify, find_events, solve_sweep
@@ -12,14 +9,11 @@ from analytic.problem.support import Support
 from analytic.solver.general.balance import states_at
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_near
-from tests.analytic.solver.general.sound import assert_confirmed
+from tests.analytic.solver.general.sound import EXACT, FORCES, PLACES, assert_confirmed, rows
 
-ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_other_side.csv")
+ROWS = rows("beyond_other_side")
 PROFILE = catenary(0.5, -0.8)
 SWEPT = [(0.95, 0.0, 0.0), (1.0, 0.0, 0.0), (1.1, 0.1, 0.01)]  # curvature, friction, radius
-READ = {"F_Ax": "force_x", "F_Ay": "force_y", "M_Az": "moment_z"}
-PLACES = {"alpha": "contact_angle", "s1": "contact_arc_length", "contact_x": "contact_x"}
-EXACT = {"rtol": 1e-11, "atol": 1e-11}
 
 
 def rows_of(natural, friction, radius):
@@ -55,7 +49,7 @@ def test_references_of_sweeps(natural, friction, radius):
         last = readings.table.iloc[-1]
         assert last["status"] == "ok"
         assert last["phase"] == row["state"].split()[0]
-        for reference, column in (READ | PLACES).items():
+        for reference, column in (FORCES | PLACES).items():
             np.testing.assert_allclose(last[column], row[reference], **EXACT)
         turned = last["tip_angle"] - natural * (1 - last["contact_arc_length"])
         np.testing.assert_allclose(turned, row["phi_contact"], **EXACT)

@@ -23,6 +23,7 @@ from analytic import (
     polygon,
     solve_contact,
     solve_sweep,
+    through_points,
     with_friction,
 )
 from analytic.problem.beam import Unloaded
@@ -50,16 +51,27 @@ def test_stations_balance(profile, natural, stiffness, friction):
     assert readings.provenance["support"]["friction"] == friction
 
 
-@pytest.mark.parametrize("name", ["catenary", "two-circles"])
-def test_friction_of_either_sign_by_integration(name):
-    """From the clamp, by a method that shares nothing with the closed form."""
-    plain = replace(named_case(name), sweep=Sweep(30))
-    for coefficient in (0.2, -0.2):
-        found = with_friction(plain, coefficient)
-        both = (found.table["phase"] != "free") & (found.table["status"] == "ok")
-        assert both.sum() > 20
-        missed = certify(found.with_friction(coefficient))[both]
-        assert missed.max(axis=None) < 1e-12
+@pytest.mark.parametrize(("name", "stations"), [("catenary", 30), ("parabola", 60)])
+def test_friction_of_either_sign(name, stations):
+    """As the sweep has it, or by integration; near the parabola's fold is another state."""
+    plain = replace(named_case(name), sweep=Sweep(stations))
+    back = with_friction(plain, -0.2)
+    both = (back.table["phase"] != "free") & (back.table["status"] == "ok")
+    assert both.sum() > 20
+    assert certify(back.with_friction(-0.2))[both].max(axis=None) < 1e-12
+    found, swept = with_friction(plain, 0.5), solve_sweep(replace(plain, friction=0.5))
+    both = (found.table["phase"] != "free") & (swept.table["status"] == "ok")
+    for column in READ:
+        assert np.abs((found.values(column) - swept.values(column))[both]).max() < 1e-11
+
+
+@pytest.mark.parametrize("friction", [0.19, 0.197, 0.2])
+def test_a_sweep_is_not_lost_where_the_curvature_jumps_and_no_kink_says_so(friction):
+    """From radius 2 to 0.5: a sixth of the stations was lost when the clamp turned the curve."""
+    case = named_case("two-circles")
+    smooth = replace(through_points(case.profile.outline(*case.reach, 1000)), kinks=())
+    found = solve_sweep(replace(case, profile=smooth, friction=friction))
+    assert (found.table["status"] == "ok").mean() > 0.99
 
 
 def test_phase_b_of_a_thin_vibrissa_shows_friction_and_clamp():
@@ -110,18 +122,6 @@ def test_first_contact_is_that_of_two_rigid_bodies(natural, profile):
     assert (found.excess < 0) == (s[inside][np.argmax(feet)] < 1 - 1e-3)
 
 
-def test_vibrissa_that_is_curved_more_than_the_object_touches_it_twice():
-    """In Phase B its curvature would be the natural one: more than the circle's, and inside."""
-    for natural, inside in ((0.9, False), (1.2, True)):
-        table = solve_sweep(case_of(circle(1.0, lowest=(0, 0.4)), natural, stations=100)).table
-        tangent = table["phase"] == "tangent"
-        assert tangent.sum() > 5
-        assert (table["status"] == "ok").all()
-        assert ("second_contact_x" in table) == inside
-        if inside:
-            assert (table["second_contact_x"].notna() == tangent).all()
-
-
 def test_tip_that_climbs_does_not_slide_on():
     """A vibrissa that is curved towards the object is straightened first, and its tip rises."""
     profile = named_case("parabola").profile
@@ -153,17 +153,6 @@ def test_curve_stays_on_its_branch_next_to_buckling():
     found = find_events(profile, beam, clamp_stiffness=stiffness)
     # In steps a fifth as long, shorter by far than the distance of the branches.
     assert found.snap_off.foot_x == pytest.approx(-1.121800216572, abs=1e-11)
-
-
-@pytest.mark.parametrize("profile", [named_case("two-circles").profile, circle(1, lowest=(0, 0.4))])
-def test_certificate_and_status_agree_on_a_vibrissa_that_is_curved_a_lot(profile):
-    """It lies down on its other side; or another part of it would be in the object."""
-    case = case_of(profile, 1.226642782643863, stations=60)
-    closed, certified = solve_sweep(case), solve_sweep(case, certified=True)
-    assert list(certified.table["status"]) == list(closed.table["status"])
-    assert set(certified.table["status"]) <= {"ok", "touches again"}
-    excess = closed.values("tip_angle") - closed.values("contact_angle")
-    assert np.nanmax(excess[(closed.table["phase"] == "tip")]) <= np.pi
 
 
 def test_phase_b_of_a_vibrissa_that_touches_twice_is_that_of_both_contacts():
@@ -222,7 +211,7 @@ def test_an_object_that_is_widest_where_the_tip_is(friction):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("corners", [16, pytest.param(64, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("corners", [16, 64])
 def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
     """Curved towards a polygon the vibrissa touches two corners on half of its way: 3e-4 L deep.
 
@@ -242,9 +231,8 @@ def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
     begin, way = vertices[:-1], np.diff(vertices, axis=0)
     normal = np.column_stack([way[:, 1], -way[:, 0]]) / np.linalg.norm(way, axis=1)[:, None]
     for i in np.flatnonzero(tangent):
-        points = np.column_stack(
-            [x[i], y[i]]
-        )  # two contacts are too close to each other for a spline
+        # Two contacts are too close to each other for a spline.
+        points = np.column_stack([x[i], y[i]])
         points = points if twice[i] else CubicSpline(place, points)(fine)
         outside = ((points[:, None] - begin) * normal).sum(axis=2).max(axis=1)
         assert outside.min() > -1e-6
@@ -259,19 +247,3 @@ def test_a_corner_beside_an_upright_vibrissa_is_touched_first():
     touching = (found.table["status"] == "ok") & (found.table["phase"] != "free")
     assert touching.sum() > 20
     assert certify(found)[touching].max(axis=None) < 1e-11
-
-
-@pytest.mark.parametrize(
-    ("name", "stations", "coefficient"), [("catenary", 30, 0.2), ("parabola", 60, 0.5)]
-)
-def test_friction_of_the_sweeps_sign_is_the_sweep(name, stations, coefficient):
-    """Near the parabola's snap-off there is another state, of three times the force."""
-    plain = replace(named_case(name), sweep=Sweep(stations))
-    found, swept = (
-        with_friction(plain, coefficient),
-        solve_sweep(replace(plain, friction=coefficient)),
-    )
-    both = (found.table["phase"] != "free") & (swept.table["status"] == "ok")
-    for column in READ:
-        difference = found.values(column) - swept.values(column)
-        assert np.abs(difference[both]).max() < 1e-11

@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 from analytic import (
     Beam,
     Case,
-    Readings,
     Sweep,
     catenary,
     certify,
@@ -66,48 +65,30 @@ BEAMS = {
 }
 
 
-# Every beam and every body in the fast tests, each pair of them in all.
-PAIRS = [
-    pytest.param(body, name, marks=() if (i + j) % 3 == 0 else pytest.mark.slow)
-    for i, body in enumerate([named_case("parabola").profile, OBJECT, SQUARE])
-    for j, name in enumerate(BEAMS)
-]
-
-
-@pytest.mark.parametrize(("profile", "name"), PAIRS)
-def test_stations_balance(profile, name):
-    readings = assert_sound(case_of(BEAMS[name], profile, clamp_stiffness=8.0, friction=0.2))
-    assert (readings.table["status"] == "ok").sum() > 10
-
-
-ANY = {
-    "varies": st.booleans(),
-    "ratio": st.floats(0.05, 1),
-    "grade": st.floats(-0.8, 0.8),
-    "natural": st.tuples(st.floats(-0.6, 0.4), st.floats(-0.6, 0.4)),
-    "compliance": st.just(0) | st.floats(1e-149, 1),
-    "friction": st.floats(0, 0.7),
-    "height": st.floats(0.25, 0.6),
-    "size": st.floats(0.8, 2),
-    "kind": st.sampled_from(["circle", "parabola", "catenary", "ellipse", "square"]),
-}
+@pytest.mark.parametrize("i", range(len(BEAMS)))
+def test_stations_balance(i):
+    """Each of them past one of three bodies."""
+    body = [named_case("parabola").profile, OBJECT, SQUARE][i % 3]
+    case = case_of([*BEAMS.values()][i], body, clamp_stiffness=8.0, friction=0.2)
+    assert (assert_sound(case).table["status"] == "ok").sum() > 10
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
-@given(**ANY)
-def test_random_vibrissae_balance(**drawn):
-    balances(**drawn)
-
-
-@pytest.mark.trial
-@settings(max_examples=300, deadline=None)
-@given(**ANY)
-def test_many_random_vibrissae_balance(**drawn):
-    balances(**drawn)
-
-
-def balances(varies, ratio, grade, natural, compliance, friction, height, size, kind):
+@settings(max_examples=20, deadline=None)
+@given(
+    varies=st.booleans(),
+    ratio=st.floats(0.05, 1),
+    grade=st.floats(-0.8, 0.8),
+    natural=st.tuples(st.floats(-0.6, 0.4), st.floats(-0.6, 0.4)),
+    compliance=st.just(0) | st.floats(1e-149, 1),
+    friction=st.floats(0, 0.7),
+    height=st.floats(0.25, 0.6),
+    size=st.floats(0.8, 2),
+    kind=st.sampled_from(["circle", "parabola", "catenary", "ellipse", "square"]),
+)
+def test_random_vibrissae_balance(
+    varies, ratio, grade, natural, compliance, friction, height, size, kind
+):
     profile = {
         "circle": lambda: circle(size, lowest=(0.1, height)),
         "parabola": lambda: parabola(1 / size, height),
@@ -206,15 +187,6 @@ def test_limit_is_smooth(varied):
     np.testing.assert_allclose(twice, 2 * once, atol=1e-4 * np.abs(once).max())
 
 
-@pytest.mark.parametrize("name", ["taper 0.1", "two wires", "bow"])
-def test_first_contact_is_an_event(name):
-    found = find_events(OBJECT, BEAMS[name], clamp_stiffness=8.0, friction=0.2).first_contact
-    case = case_of(BEAMS[name], stations=5, clamp_stiffness=8.0, friction=0.2)
-    swept = solve_sweep(case).provenance["events"]["first_contact"]
-    assert found.status == "ok" and found.force_y == 0
-    assert found.foot_x == pytest.approx(swept, abs=1e-14)
-
-
 @pytest.mark.parametrize("ratio", [0.7, 0.1, 0.05, 1e-3])
 @pytest.mark.parametrize("a", [0.3, 0.9, 1.0])
 def test_small_deflection_of_a_cone(a, ratio):
@@ -276,10 +248,8 @@ def test_first_contact_is_that_of_two_rigid_bodies(name):
         vibrissa = Vibrissa.of(beam, Support())
         beside = touch.p + np.array([-1e-2, 1e-6])
         # Its 16 places may lie beside the contact, and one that goes along enters by a square.
-        assert list(is_rest_clear(case.centreline, vibrissa, case.poses.at(beside))) == [
-            False,
-            True,
-        ]
+        clear = is_rest_clear(case.centreline, vibrissa, case.poses.at(beside))
+        assert list(clear) == [False, True]
 
 
 @pytest.mark.slow
@@ -297,22 +267,14 @@ def test_curve_ends_where_a_flexible_tip_would_wind_up():
     assert (assert_sound(case).table["status"] == "ok").all()
 
 
-@pytest.mark.slow
-def test_mirror_units_and_file(tmp_path):
-    beam = Beam(tip_radius=0.002, natural_curvature=bow(-0.4))
-    case = case_of(beam, circle(1.0, lowest=(0.2, 0.4)), clamp_stiffness=4.0, friction=0.2)
-    left, right = solve_sweep(case), solve_sweep(case.mirrored())
-    for name, sign in (("force_x", -1), ("force_y", 1), ("moment_z", -1), ("foot_x", -1)):
-        np.testing.assert_allclose(right.values(name), sign * left.values(name), atol=1e-13)
-    back = Readings.read(right.write(tmp_path / "sweep.parquet"))
-    assert back.beam == right.beam
-    np.testing.assert_array_equal(certify(back), certify(right))
-
-    metres = Beam(50.0, 2.0, 0.25, tip_radius=0.1, natural_curvature=lambda s: -0.4 / 50 * s / 50)
-    held = {"clamp_stiffness": 4.0 * metres.moment_unit, "friction": 0.2}
-    other = solve_sweep(case_of(metres, circle(50.0, lowest=(10, 20.0)), **held))
+def test_other_units():
+    case = case_of(BEAMS["cone and bow"], clamp_stiffness=4.0, friction=0.2)
+    metres = Beam(50.0, 2.0, 0.25, tip_radius=0.1, natural_curvature=lambda s: -0.5 / 50 * s / 50)
+    stiffness = 4.0 * metres.moment_unit
+    body = OBJECT.scaled(50.0)
+    other = solve_sweep(case_of(metres, body, clamp_stiffness=stiffness, friction=0.2))
     moment = other.values("moment_z") / metres.moment_unit
-    np.testing.assert_allclose(moment, left.values("moment_z"), atol=1e-11)
+    np.testing.assert_allclose(moment, solve_sweep(case).values("moment_z"), atol=1e-11)
 
 
 def test_residuals_find_a_wrong_rigidity():
@@ -352,11 +314,8 @@ def test_a_sharp_tip_does_not_let_go_by_chance():
     assert np.ptp(found) < 2e-4  # observed 1.1e-4
 
 
-@pytest.mark.parametrize(
-    "ratio",
-    [pytest.param(ratio, marks=pytest.mark.slow) for ratio in (0.05, 0.005)]
-    + [pytest.param(ratio, marks=pytest.mark.trial) for ratio in (0.02, 0.01)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.05, 0.005])
 def test_a_sharp_cone_lets_go_at_a_state_that_balances(ratio):
     """A point next to the fold that missed its conditions by 5e-9 seemed to lie beyond it."""
     case = named_case("tip-only")

@@ -1,6 +1,6 @@
-"""Along the way of the foot with friction: contacts slide, stick, change phase, and end."""
+"""Stretch by stretch along the way of the foot: contacts slide, stick, change phase, and end."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import product
 from typing import NamedTuple
 
@@ -10,11 +10,10 @@ from scipy.optimize import brentq
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import Feature, Spot, across
 from analytic.space.problem.path import StraightVibrissa
-from analytic.space.solver.contact import APART, Scene
-from analytic.space.solver.hop import DependsOnMotion
+from analytic.space.solver.contact import APART, Contact, Scene
 from analytic.space.solver.panel import POINTS, Law, Panel, panel
 from analytic.space.solver.sliding import BY_TRAVEL, Leg, Sliding, state_of
-from analytic.space.solver.walk import LOOSE, Walker
+from analytic.space.solver.stability import margin, second_variation
 
 _LOOKED_AT = 720  # directions
 _ALIKE = 1e-9  # of the foot's speed
@@ -23,14 +22,17 @@ _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's t
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
 _SHORT = 1e-3, 1e-6  # of panels past an edge, if something happens soon
 _SAFE = 0.8  # of a length that would just be short enough
-_LAST = "slip-off", "release"
+LAST = "slip-off", "release"
+NOTED = "phase", "stick", "slide"
 _CLOSE = 1e-14  # of a panel, to which events are enclosed
 # How much coarser the panel of a first contact may be: with so little force rounding leaves more of
 # friction's direction, and it is steep. What follows forgets it.
 _STEEP = 1e3
 _AHEAD = 1e-8  # of the state's vector, past an edge
+_BESIDE = 1e-6  # of the same, past a seam of faces that are 1e-7 rad apart
 _MARKED = 1e-12  # L, to a corner of the way
 _SAME = 1e-12  # L; a point that is farther from the body's nearest one is on another face or edge
+LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _STILL = 1e-9  # of a speed: a contact that has just begun to slide hardly does
 
 
@@ -42,7 +44,8 @@ def first_slips(
     lowest = way.lowest_contact(before, way.gap(before).arc_length)
     spot = scene.body.nearest(way.foot(before) + lowest * scene.tangent, APART)
     normal = spot.normal
-    for tau in _directions(normal, scene.tangent, onward, friction):
+    directions = _directions(normal, scene.tangent, onward, friction)
+    for tau in directions if friction else [np.zeros(3)]:
         numbers = 0.0, lowest, touch
         force = normal + friction * tau
         place = spot.point + APART * normal
@@ -80,8 +83,15 @@ class Stretch(NamedTuple):
     event: str | None  # none at its own end
     last: Sliding  # the state there
 
+    def at(self, travel: float) -> "Held":
+        """The state where the foot has come so far."""
+        share = self.panel.share_at(travel, self.end)
+        state = self.panel.at(share, travel)
+        velocity, speed = self.panel.velocity(share, state)
+        return Held(state, velocity / speed, self)
 
-class Rubbed(NamedTuple):
+
+class Held(NamedTuple):
     """A state on its stretch."""
 
     state: Sliding
@@ -94,52 +104,37 @@ class Rubbed(NamedTuple):
         return self.state.contact.force
 
 
-class Rubbing(Walker[Rubbed]):
-    def __init__(self, scene: Scene, way: StraightVibrissa, friction: float) -> None:
-        super().__init__(scene, way)
-        self._friction = friction
+class Branch:
+    """The states of a contact, stretch by stretch."""
 
-    def _begin(self, travel: float) -> Rubbed | None:
+    def __init__(self, scene: Scene, way: StraightVibrissa, friction: float) -> None:
+        self._scene, self._way, self._friction = scene, way, friction
+
+    def begin(self, travel: float) -> Held | None:
+        """The contact of a vibrissa that is hardly bent; none if friction holds it there."""
         for first in first_slips(self._scene, self._way, travel, self._friction):
             # Along an upright face the vibrissa bends about its lower end.
             low = first.contact.on_parallel - _AHEAD * self._scene.tangent
             scene = self._on(self._scene.body.nearest(low, APART))
             state = state_of(scene, first.vector, first.contact.tangent)
             found = self._panel(self._leg(travel), state, False, _FIRST, None)
-            if found is not None and self._margins(found, 1)["stick"] > 0:
-                return Rubbed(state, np.zeros(3), self._stretch(found))
+            goes_on = "stick" if self._friction else "slip-off"
+            if found is not None and self._margins(found, 1)[goes_on] > 0:
+                return Held(state, np.zeros(3), self._stretch(found))
         return None
 
-    def _follow(self, contact: Rubbed, at: float, to: float) -> tuple[float, Rubbed, bool]:
-        stretch = contact.stretch
-        while stretch.last.travel < to:
-            if stretch.event in ("phase", "stick", "slide"):
-                self._note(stretch.event, stretch.last.travel)
-            following = self._after(stretch)
-            if following is None:
-                at = stretch.last.travel
-                if stretch.event == "release":
-                    at = max(at, self._way.next_clear(at) or at)
-                return at, contact._replace(state=stretch.last, stretch=stretch), False
-            stretch = following
-        share = stretch.panel.share_at(to, stretch.end)
-        state = stretch.panel.at(share, to)
-        velocity, speed = stretch.panel.velocity(share, state)
-        return to, Rubbed(state, velocity / speed, stretch), True
+    def on_from(self, landed: Contact, travel: float) -> Held | None:
+        """On from where a vibrissa without friction has landed."""
+        numbers = np.array([landed.rotation, landed.arc_length, travel])
+        parts = landed.on_parallel, np.zeros(3), landed.plane.lateral, numbers
+        state = state_of(self._on(landed.spot), np.concatenate(parts), landed.tangent)
+        found = self._panel(self._leg(travel), state, False, _FIRST, None)
+        return found and Held(state, np.zeros(3), self._stretch(found))
 
-    def _end(self, contact: Rubbed, travel: float) -> str:
-        known = contact.stretch.event in _LAST
-        return super()._end(contact, travel) if known else "diverged"
-
-    def _land(self, contact: Rubbed, travel: float) -> None:
-        """Past edges it may be caught again, on a face or by a corner."""
-        if not self._scene.body.smooth and contact.stretch.event == "slip-off":
-            raise DependsOnMotion
-
-    def _after(self, stretch: Stretch) -> Stretch | None:
+    def after(self, stretch: Stretch) -> Stretch | None:
         """What follows; none after the last of a contact."""
         done, state, event = stretch.panel, stretch.last, stretch.event
-        if event in _LAST:
+        if event in LAST:
             return None
         sticks, leg, scene = done.law.sticks, done.law.leg, done.scene
         if event == "phase":
@@ -148,30 +143,36 @@ class Rubbing(Walker[Rubbed]):
             sticks = not sticks
         elif event == "corner":
             leg = self._leg(state.travel)
-        elif event == "edge":
-            ahead = done.beyond(stretch.end + _AHEAD / done.reach)
-            scene = self._on(self._scene.body.nearest(ahead[:3], APART))
-            state = state_of(scene, state.vector, state.contact.tangent)
-            law = Law(leg, self._friction, sticks)  # the edge was found to `_SAME` only
-            state = law.settled(scene, state, BY_TRAVEL, state.travel) or state
         reach = min(done.reach * min(_change(done), _LONGER), _LONGEST)
-        if event is not None and not self._scene.body.smooth:
-            return self._lasting(stretch, leg, state, sticks, reach)
+        if event is not None and not (self._friction and self._scene.body.smooth):
+            states = self._past_edge(stretch) if event == "edge" else [state]
+            return self._lasting(stretch, leg, states, sticks, reach)
         found = self._panel(leg, state, sticks, reach, done if event is None else None)
-        if found is not None and not sticks and self._margins(found, 0)["stick"] < -_STILL:
+        if found and found.law.rubs and self._margins(found, 0)["stick"] < -_STILL:
             found = self._panel(leg, state, True, reach, None)  # the foot has turned
         return None if found is None else self._stretch(found)
 
+    def _past_edge(self, stretch: Stretch) -> Iterator[Sliding]:
+        """The state on the next face or edge, and past a seam of faces that are nearly one."""
+        done, state = stretch.panel, stretch.last
+        for ahead in (_AHEAD, _BESIDE):
+            place = done.beyond(stretch.end + ahead / done.reach)[:3]
+            scene = self._on(self._scene.body.nearest(place, APART))
+            near = state_of(scene, state.vector, state.contact.tangent)
+            # The edge was found to `_SAME` only.
+            yield done.law.settled(scene, near, BY_TRAVEL, state.travel) or near
+
     def _lasting(
-        self, before: Stretch, leg: Leg, state: Sliding, sticks: bool, reach: float
+        self, before: Stretch, leg: Leg, states: Iterable[Sliding], sticks: bool, reach: float
     ) -> Stretch | None:
         """Sliding or sticking past an edge, whichever goes on; neither, and it lets go there."""
-        known = False
-        for law, most in product((sticks, not sticks), (reach, *_SHORT)):
-            found = self._panel(leg, state, law, most, None)
-            known |= found is not None
-            if found is not None and min(self._margins(found, 1).values()) > 0:
-                return self._stretch(found)
+        known, laws = False, (sticks, not sticks) if self._friction else (False,)
+        for state in states:
+            for law, most in product(laws, (reach, *_SHORT)):
+                found = self._panel(leg, state, law, most, None)
+                known |= found is not None
+                if found is not None and min(self._margins(found, 1).values()) > 0:
+                    return self._stretch(found)
         return before._replace(event="slip-off") if known else None
 
     def _on(self, spot: Spot) -> Scene:
@@ -205,11 +206,11 @@ class Rubbing(Walker[Rubbed]):
             if not passed:
                 continue
 
-            def margin(share: float, kind: str = kind) -> float:
+            def left(share: float, kind: str = kind) -> float:
                 return self._margin(found, share, found.at(share))[kind]
 
             low, high = float(POINTS[passed[0] - 1]), float(POINTS[passed[0]])
-            share = low if margin(low) <= 0 else float(brentq(margin, low, high, xtol=_CLOSE))
+            share = low if left(low) <= 0 else float(brentq(left, low, high, xtol=_CLOSE))
             if share < end:
                 end, event = share, kind
         return Stretch(found, end, event, found.states[-1] if event is None else found.at(end))
@@ -221,6 +222,8 @@ class Rubbing(Walker[Rubbed]):
         """What is positive up to an event."""
         velocity, speed = found.velocity(share, state)
         contact, size = state.contact, float(np.sqrt(state.rub @ state.rub))
+        if not self._friction:
+            speed = margin(second_variation(contact, self._scene.radius))
         margins = {
             "slip-off": speed,
             "release": contact.force - LOOSE / 2,
@@ -228,7 +231,7 @@ class Rubbing(Walker[Rubbed]):
         }
         if found.law.sticks:
             margins["slide"] = self._friction - size
-        else:
+        elif self._friction:
             margins["stick"] = -float(velocity @ state.rub) / size
         if not self._scene.body.smooth:
             nearest = self._scene.body.nearest(contact.on_parallel, APART).point

@@ -1,0 +1,394 @@
+"""What a rig or a simulator does wrong, in a sweep or its readings, and what should name it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from analytic import CLAMP_READINGS, Case, Readings, Sweep, solve_sweep
+from compare.sense.noise import with_noise
+
+_SEGMENTS = 40
+
+Swept = Callable[[Case, np.random.Generator], Readings]
+Sensor = Callable[[Readings, np.random.Generator], Readings]
+Act = Callable[[np.ndarray, np.random.Generator], np.ndarray]
+
+
+def with_own_error(sweep: Readings, rng: np.random.Generator, size: float) -> Readings:
+    """The readings of a model that is a little off, smoothly, and from segment to segment."""
+    progress = np.linspace(0, 1, len(sweep.table))
+
+    def off(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        waves = sum(
+            rng.normal() * np.cos(k * np.pi * progress + rng.uniform(0, 2 * np.pi))
+            for k in range(1, 5)
+        )
+        steps = np.sin(2 * np.pi * _SEGMENTS * progress + rng.uniform(0, 2 * np.pi))
+        shape = np.where(values != 0, waves + 0.5 * steps, 0.0)
+        scale = size * np.nanmax(np.abs(values)) / np.sqrt(np.mean(shape**2))
+        return values + scale * shape
+
+    return each(off)(sweep, rng)
+
+
+def either(rng: np.random.Generator, low: float, high: float) -> float:
+    """A size of either sign."""
+    return float(rng.uniform(low, high) * rng.choice([-1, 1]))
+
+
+def _begun(case: Case, earlier: float, **changes: Any) -> Readings:
+    """The sweep of a changed case, begun clear of the object."""
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    sweep = replace(case.sweep, start=start + earlier, stop=stop)
+    return solve_sweep(replace(case, sweep=sweep, **changes))
+
+
+def another(case: Case, earlier: float, **beam: float) -> Readings:
+    """The sweep of another vibrissa, which claims to be the case's."""
+    wrong = _begun(case, earlier, beam=replace(case.beam, **beam))
+    return replace(wrong, beam=case.beam)
+
+
+def beam_off(name: str, low: float, high: float, sign: bool = True) -> Swept:
+    """A number of the beam that is off by a fraction of it."""
+
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        by = either(rng, low, high) if sign else float(rng.uniform(low, high))
+        return another(case, 0.05, **{name: getattr(case.beam, name) * (1 + by)})
+
+    return swept
+
+
+def held(**support: tuple[float, float]) -> Swept:
+    """The sweep of a vibrissa held otherwise, of which nothing is said."""
+
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        numbers = {name: float(rng.uniform(*limits)) for name, limits in support.items()}
+        return solve_sweep(replace(case, **numbers))
+
+    return swept
+
+
+def raised(case: Case, rng: np.random.Generator) -> Readings:
+    return _begun(case, 0.05, profile=case.profile.raised(either(rng, 0.005, 0.02)))
+
+
+def sized(case: Case, rng: np.random.Generator) -> Readings:
+    """An object of the same shape, larger or smaller about its lowest point, which is at x = 0."""
+    by, lowest = either(rng, 0.05, 0.2), float(case.outline(1000)[1].min())
+    return _begun(case, 0.2, profile=case.profile.scaled(1 + by).raised(-by * lowest))
+
+
+def rigid_first_half(case: Case, rng: np.random.Generator) -> Readings:
+    """No hinge in the first half cell."""
+    by = 0.5 / float(rng.integers(10, 41))
+    beam = replace(case.beam, length=1 - by)
+    sweep = _begun(case, 0.05, beam=beam, profile=case.profile.raised(-by))
+    moment = sweep.values("moment_z") - by * sweep.values("force_x")
+    return replace(columns(sweep, moment_z=moment), beam=case.beam)
+
+
+def softer_and_rubbing(case: Case, rng: np.random.Generator) -> Readings:
+    beam = replace(case.beam, flexural_rigidity=1 + either(rng, 0.1, 0.3))
+    swept = solve_sweep(replace(case, beam=beam, friction=float(rng.uniform(0.05, 0.2))))
+    return replace(swept, beam=case.beam)
+
+
+def columns(sweep: Readings, **changed: np.ndarray) -> Readings:
+    return replace(sweep, table=sweep.table.assign(**changed))
+
+
+def on(name: str, act: Act) -> Sensor:
+    """A mistake in a column of that name."""
+    return lambda sweep, rng: columns(sweep, **{name: act(sweep.values(name), rng)})
+
+
+def one(act: Act) -> Sensor:
+    """A mistake in one reading, drawn at random."""
+    return lambda sweep, rng: on(str(rng.choice(CLAMP_READINGS)), act)(sweep, rng)
+
+
+def each(act: Act) -> Sensor:
+    """The same in every reading."""
+    return lambda sweep, rng: columns(
+        sweep, **{name: act(sweep.values(name), rng) for name in CLAMP_READINGS}
+    )
+
+
+def both(first: Sensor, second: Sensor) -> Sensor:
+    return lambda sweep, rng: second(first(sweep, rng), rng)
+
+
+def largest(values: np.ndarray) -> float:
+    return float(np.abs(values).max())
+
+
+def gain(low: float, high: float) -> Act:
+    return lambda values, rng: values * (1 + either(rng, low, high))
+
+
+def zero(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return values + either(rng, 0.03, 0.1) * largest(values)
+
+
+def drifting(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return values + either(rng, 0.05, 0.2) * largest(values) * np.linspace(0, 1, len(values))
+
+
+def spiked(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """One to three single values far off, amid contact."""
+    values, rows = values.copy(), len(values)
+    at = int(rng.uniform(0.3, 0.5) * rows) + 5 * np.arange(rng.integers(1, 4))
+    values[at] += rng.choice([-1, 1]) * rng.uniform(1, 100) * largest(values)
+    return values
+
+
+def clipped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    limit = np.quantile(np.abs(values), rng.uniform(0.7, 0.9))
+    return np.clip(values, -limit, limit)
+
+
+def cubic(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return values * (1 + either(rng, 0.05, 0.3) * (values / largest(values)) ** 2)
+
+
+def stepped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    step = rng.uniform(0.03, 0.08) * largest(values)
+    return step * np.round(values / step)
+
+
+def later(values: np.ndarray, by: float) -> np.ndarray:
+    rows = np.arange(len(values))
+    return np.interp(rows - by, rows, values)
+
+
+def late(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """A delay of all channels alike."""
+    by = float(rng.uniform(2, 6))
+    return each(lambda values, rng: later(values, by))(sweep, rng)
+
+
+def exchanged(name: str, other: str) -> Sensor:
+    return lambda sweep, rng: columns(
+        sweep, **{name: sweep.values(other), other: sweep.values(name)}
+    )
+
+
+def turned(sweep: Readings, rng: np.random.Generator) -> Readings:
+    angle = np.radians(either(rng, 3, 10))
+    x, y, c, s = sweep.values("force_x"), sweep.values("force_y"), np.cos(angle), np.sin(angle)
+    return columns(sweep, force_x=c * x + s * y, force_y=c * y - s * x)
+
+
+def displaced(sweep: Readings, rng: np.random.Generator) -> Readings:
+    lever = either(rng, 0.03, 0.1)
+    return columns(sweep, moment_z=sweep.values("moment_z") + lever * sweep.values("force_x"))
+
+
+def all_units(sweep: Readings, rng: np.random.Generator) -> Readings:
+    factor = rng.choice([1000.0, 9.80665, 1 / 9.80665])
+    return each(lambda values, rng: factor * values)(sweep, rng)
+
+
+def crosstalk(sweep: Readings, rng: np.random.Generator) -> Readings:
+    onto, of = rng.permutation(CLAMP_READINGS)[:2]
+    values, other = sweep.values(onto), sweep.values(of)
+    by = either(rng, 0.05, 0.2) * largest(values) / largest(other)
+    return columns(sweep, **{onto: values + by * other})
+
+
+def humming(sweep: Readings, rng: np.random.Generator) -> Readings:
+    turns = 2 * np.pi * np.arange(len(sweep.table)) / rng.uniform(2.5, 12)
+
+    def hum(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        size = rng.uniform(0.02, 0.05) * largest(values)
+        return values + size * np.sin(turns + rng.uniform(0, 6))
+
+    return each(hum)(sweep, rng)
+
+
+def jittering(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """The foot is not where the stage says."""
+    x = sweep.values("foot_x")
+    order = np.argsort(x)
+    there = x + rng.uniform(0.003, 0.01) * rng.standard_normal(len(x))
+    return each(lambda values, rng: np.interp(there, x[order], values[order]))(sweep, rng)
+
+
+def loud(sweep: Readings, rng: np.random.Generator) -> Readings:
+    level = dict.fromkeys(CLAMP_READINGS, float(rng.uniform(0.02, 0.04)))
+    return with_noise(sweep, level, int(rng.integers(1 << 30)))
+
+
+def rows(pick: Callable[[int, np.random.Generator], np.ndarray]) -> Sensor:
+    """The rows that are picked out of so many, in that order."""
+    return lambda sweep, rng: replace(
+        sweep, table=sweep.table.iloc[pick(len(sweep.table), rng)].reset_index(drop=True)
+    )
+
+
+def repeated(count: int, rng: np.random.Generator) -> np.ndarray:
+    return np.sort(np.append(np.arange(count), rng.choice(count, count // 10, False)))
+
+
+def lost(value: float) -> Sensor:
+    """Amid contact, 5 to 15 % of the sweep."""
+
+    def made(sweep: Readings, rng: np.random.Generator) -> Readings:
+        row = np.arange(len(sweep.table))
+        begin = int(rng.uniform(0.25, 0.6) * len(row))
+        gone = (row >= begin) & (row < begin + int(rng.uniform(0.05, 0.15) * len(row)))
+        return each(lambda values, rng: np.where(gone, value, values))(sweep, rng)
+
+    return made
+
+
+def ended(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """The vibrissa lets go well before it should."""
+    touching = np.flatnonzero(np.abs(sweep.values("force_y")) > 0.02)
+    last = touching[int(rng.uniform(0.6, 0.9) * len(touching))]
+    there = np.arange(len(sweep.table)) < last
+    return each(lambda values, rng: np.where(there, values, 0.0))(sweep, rng)
+
+
+SOFT = 8.0  # EI/L; a clamp that is known to give way
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """What is planted, and the words that name it, apart by "&"; none where nothing should be.
+
+    What need not be named has `must` False.
+    `swept` is a sweep that is wrong itself, `sensed` what the sensor makes of it before its noise,
+    and `recorded` what the file makes of that. `stated` is what the case says of the support.
+    """
+
+    named: str | None
+    swept: Swept | None = None
+    sensed: Sensor | None = None
+    recorded: Sensor | None = None
+    must: bool = True
+    stated: dict[str, float] = field(default_factory=dict)
+
+
+_OFFSET = on("foot_x", lambda v, rng: v + either(rng, 0.01, 0.03))
+# A stage that counts its way the other way, from an origin of its own or the world's.
+_BACKWARDS = on("foot_x", lambda v, rng: rng.choice([0.0, rng.uniform(-0.5, 0.5)]) - v)
+MISTAKES: dict[str, Mistake] = {
+    "flexural rigidity": Mistake("flexural rigidity", beam_off("flexural_rigidity", 0.03, 0.3)),
+    "length": Mistake("length of the vibrissa", beam_off("length", 0.01, 0.03)),
+    "radius": Mistake("radius of the vibrissa", beam_off("radius", 1.5, 5, sign=False)),
+    "soft clamp": Mistake("clamp stiffness", held(clamp_stiffness=(5.0, 50.0))),
+    "clamp stiffness": Mistake(
+        "clamp stiffness",
+        lambda case, rng: solve_sweep(
+            replace(case, clamp_stiffness=SOFT * (1 + either(rng, 0.1, 0.3)))
+        ),
+        stated={"clamp_stiffness": SOFT},
+    ),
+    "friction": Mistake("friction", held(friction=(0.05, 0.2))),
+    "friction stated": Mistake("friction", held(friction=(0.3, 0.5)), stated={"friction": 0.2}),
+    "natural curvature": Mistake(
+        "natural curvature",
+        lambda case, rng: another(case, 0.3, natural_curvature=either(rng, 0.05, 0.4)),
+    ),
+    "taper": Mistake(
+        "tip radius",
+        lambda case, rng: another(
+            case, 0.3, tip_radius=float(rng.uniform(0.5, 0.95)) * case.beam.radius
+        ),
+    ),
+    "offset of the stage": Mistake("foot_x", sensed=_OFFSET),
+    "gain": Mistake("gain of", sensed=one(gain(0.05, 0.3))),
+    "zero": Mistake("zero of", sensed=one(zero)),
+    "gravity": Mistake("constant load", sensed=each(zero)),
+    "drift": Mistake("drift of", sensed=one(drifting)),
+    "axes swapped": Mistake("force_x and force_y swapped", sensed=exchanged("force_x", "force_y")),
+    "one sign": Mistake("opposite sign of", sensed=one(lambda v, rng: -v)),
+    "all signs": Mistake(
+        "all three readings have the opposite sign", sensed=each(lambda v, rng: -v)
+    ),
+    "sensor turned": Mistake("sensor turned by", sensed=turned),
+    "sensor displaced": Mistake("along the vibrissa off the clamp", sensed=displaced),
+    "unit of one": Mistake(
+        "in another unit",
+        sensed=one(lambda v, rng: v * rng.choice([1000.0, 0.001, 9.80665, 1 / 9.80665])),
+    ),
+    "unit of all": Mistake("all readings in another unit", sensed=all_units),
+    "dead channel": Mistake("dead channel", sensed=one(lambda v, rng: 0 * v)),
+    "opposite direction": Mistake(
+        "opposite direction of travel",
+        lambda case, rng: solve_sweep(
+            replace(case, sweep=Sweep(case.sweep.stations, direction="right"))
+        ),
+    ),
+    "reversed rows": Mistake("rows reversed", recorded=rows(lambda n, rng: np.arange(n)[::-1])),
+    "foot_x backwards": Mistake("foot_x counts the other way", recorded=_BACKWARDS),
+    "shuffled rows": Mistake("rows out of order", recorded=rows(lambda n, rng: rng.permutation(n))),
+    "repeated rows": Mistake("repeat the row before", recorded=rows(repeated)),
+    "gap": Mistake("lack a number", recorded=lost(np.nan)),
+    "dropout": Mistake("filled with zeros", recorded=lost(0.0)),
+    "spikes": Mistake("single stations", recorded=one(spiked)),
+    "saturation": Mistake("cut off at the extreme", recorded=one(clipped)),
+    "no contact": Mistake("never touches", recorded=each(lambda v, rng: 0 * v)),
+    "noise": Mistake("noise: differences jump", sensed=loud),
+    "two at once": Mistake(
+        "gain of force_x & zero of moment_z",
+        sensed=both(
+            on("force_x", lambda v, rng: 1.08 * v),
+            on("moment_z", lambda v, rng: v + 0.06 * largest(v)),
+        ),
+    ),
+    "exchanged with the moment": Mistake(
+        "and moment_z swapped",
+        sensed=lambda sweep, rng: exchanged(str(rng.choice(["force_x", "force_y"])), "moment_z")(
+            sweep, rng
+        ),
+    ),
+    "delay of one": Mistake("lags", sensed=one(lambda v, rng: later(v, rng.uniform(2, 6)))),
+    "delay of all": Mistake("or a lag", sensed=late),
+    "drift of all": Mistake("drift of all", sensed=each(drifting)),
+    "gain and zero": Mistake(
+        "gain of & zero of", sensed=one(lambda v, rng: zero(gain(0.05, 0.3)(v, rng), rng))
+    ),
+    "cubic": Mistake("cubic", sensed=one(cubic)),
+    "crosstalk": Mistake("crosstalk", sensed=crosstalk),
+    "hum": Mistake("hum", sensed=humming),
+    "steps": Mistake("quantised", recorded=one(stepped)),
+    "jitter of the foot": Mistake("jitter", sensed=jittering),
+    "scale of the stage": Mistake("scale of the stage", sensed=on("foot_x", gain(0.01, 0.04))),
+    "object raised": Mistake("height of the object", raised),
+    "object size": Mistake("size of the object", sized),
+    "contact ends early": Mistake("ends early", recorded=ended),
+    "whole first cell": Mistake(
+        "half a cell",
+        lambda case, rng: solve_sweep(
+            replace(case, clamp_stiffness=2.0 * float(rng.integers(10, 41)))
+        ),
+    ),
+    "rigid first half cell": Mistake("rigid over its first", rigid_first_half),
+    "rigidity and friction": Mistake("flexural rigidity & friction", softer_and_rubbing),
+    "soft clamp and offset": Mistake(
+        "clamp stiffness & foot_x", held(clamp_stiffness=(5.0, 20.0)), sensed=_OFFSET
+    ),
+    "gain and drift": Mistake(
+        "gain of force_y & drift of moment_z",
+        sensed=both(on("force_y", gain(0.05, 0.3)), on("moment_z", drifting)),
+    ),
+    "sign and zero": Mistake(
+        "opposite sign of force_x & zero of force_y",
+        sensed=both(on("force_x", lambda v, rng: -v), on("force_y", zero)),
+    ),
+    "swap and rigidity": Mistake(
+        "swapped & flexural rigidity",
+        beam_off("flexural_rigidity", 0.05, 0.3),
+        exchanged("force_x", "force_y"),
+    ),
+    "a coarse model": Mistake(
+        None,
+        sensed=lambda sweep, rng: with_own_error(sweep, rng, rng.uniform(0.01, 0.03)),
+        must=False,
+    ),
+}
