@@ -161,7 +161,7 @@ def test_a_film_of_somebody_else_stays(tmp_path):
 def test_contacts_are_written_though_no_family_explains_them(tmp_path):
     (tmp_path / "wedge.toml").write_text(
         '[profile]\nkind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]\n'
-        "[sweep]\nstations = 24\n"
+        "[sweep]\nstations = 12\n"
     )
     vibrissa("run", "wedge.toml", "--engine", "exact", "--out", "w", cwd=tmp_path).ended(0)
     words = ("reconstruct", "w/analytic.parquet", "--fit", "auto", "--out", "o")
