@@ -4,14 +4,19 @@ import pytest
 
 
 @pytest.fixture
-def undrawn(monkeypatch):
-    """Pages have no pictures and no film: to draw one report's takes as long as ten comparisons.
+def unpictured(monkeypatch):
+    """Pages have no pictures: to draw one report's takes as long as ten comparisons.
 
     That they are drawn is tested by `test_main`, in `tests/compare/show` and `spatial`, by workers'
     reports in `testing`, and by the pages.
     """
-    monkeypatch.setattr("compare.show.animation.plane.write_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.document.Picture.figures", {})
     monkeypatch.setattr("compare.show.report.readings", lambda *_: b"")
-    monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.report.png", lambda *_: b"")
+
+
+@pytest.fixture
+def undrawn(unpictured, monkeypatch):
+    """Nor a film."""
+    monkeypatch.setattr("compare.show.animation.plane.write_animation", lambda *_: [])
+    monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])

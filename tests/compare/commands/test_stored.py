@@ -8,7 +8,7 @@ import pytest
 from analytic import Beam, Case, Readings, Sweep, circle, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.read.run_folder import read_run
-from tests.compare.case_files import RIG_COLUMNS, as_a_rig
+from tests.compare.case_files import CASE, RIG_COLUMNS, as_a_rig
 from tests.compare.command import reported_again, vibrissa
 
 
@@ -30,7 +30,7 @@ def test_the_report_of_a_run_again(tmp_path):
         '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n' + limits
     )
     words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
-    done = vibrissa("run", *words, "--budget", "--film", cwd=tmp_path)
+    done = vibrissa("run", *words, "--budget", "--film", "--frames", "6", cwd=tmp_path)
     reported_again(done, tmp_path / "out", "report.html", "readings.png")
     assert "The largest part is discretisation" in done.stdout
     stored = read_run(tmp_path / "out")
@@ -119,7 +119,8 @@ def test_a_page_of_somebody_else_is_not_replaced(tmp_path, page):
 @pytest.mark.slow
 def test_no_result_replaces_a_file_of_somebody_else(tmp_path):
     """Whatever its kind, and whichever command; a second run replaces the files of the first."""
-    run = ("run", "catenary", "--engine", "exact", "--out", "out")
+    (tmp_path / "case.toml").write_text(CASE)
+    run = ("run", "case.toml", "--engine", "exact", "--out", "out")
     find = ("reconstruct", "out/analytic.parquet", "--fit", "circle", "--out", "out")
     for words in (run, find, run, find):
         assert vibrissa(*words, cwd=tmp_path).returncode < 2
@@ -139,6 +140,7 @@ def test_no_result_replaces_a_file_of_somebody_else(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unpictured")
 def test_a_film_of_somebody_else_stays(tmp_path):
     run = ("run", "catenary", "--stations", "12", "--segments", "6", "--out", "out")
     film = tmp_path / "out" / "animation.gif"
@@ -149,7 +151,7 @@ def test_a_film_of_somebody_else_stays(tmp_path):
     assert film.read_bytes() == b"GIF89a of a holiday"
     film.unlink()
     for _ in range(2):
-        assert vibrissa(*run, "--film", cwd=tmp_path).returncode < 2
+        assert vibrissa(*run, "--film", "--frames", "4", cwd=tmp_path).returncode < 2
         assert film.is_file()
     assert vibrissa(*run, cwd=tmp_path).returncode < 2
     assert not film.exists()  # it would be of another sweep
@@ -159,7 +161,7 @@ def test_a_film_of_somebody_else_stays(tmp_path):
 def test_contacts_are_written_though_no_family_explains_them(tmp_path):
     (tmp_path / "wedge.toml").write_text(
         '[profile]\nkind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]\n'
-        "[sweep]\nstations = 24\n"
+        "[sweep]\nstations = 12\n"
     )
     vibrissa("run", "wedge.toml", "--engine", "exact", "--out", "w", cwd=tmp_path).ended(0)
     words = ("reconstruct", "w/analytic.parquet", "--fit", "auto", "--out", "o")
