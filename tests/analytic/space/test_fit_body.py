@@ -66,6 +66,7 @@ def test_noise_that_remembers_is_no_contact_behind_the_slip_off(seed):
         assert half < 0.1
 
 
+@pytest.mark.slow
 def test_a_contact_that_noise_moves_far_does_not_count():
     """One station of little force left 20 to 80 times its noise: six of 40 right fits refused."""
     body = cylinder(0.5, (0.1, 1.2, 0.0), (0.3, 0.0, 1.0))

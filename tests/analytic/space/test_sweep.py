@@ -64,7 +64,13 @@ def known(name, tangent):
     return swept(body, points, 25, tangent=tangent)
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(n, marks=pytest.mark.slow if n in ("polyhedron", "prism") else ())
+        for n in BODIES
+    ],
+)
 @pytest.mark.parametrize("tangent", [UPRIGHT, LEANING])
 def test_every_state_satisfies_the_equations_of_the_rod(name, tangent):
     readings = known(name, tangent)
