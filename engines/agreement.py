@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.case import Case
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.vibrissa import Vibrissa

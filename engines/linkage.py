@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.obstacles.protocol import Obstacle

@@ -13,7 +13,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Pose
 from analytic.problem.errors import InputError

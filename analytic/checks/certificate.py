@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.checks.integration import integrate_span
 from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.readings import Readings, require_readings
 from analytic.problem.support import is_plain, support_of
 

@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 Quantity: TypeAlias = Callable[[Floats], Floats]
 """A quantity along the vibrissa, dimensionless, element by element."""

@@ -12,7 +12,7 @@ from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
 from scipy.special import ellipj, ellipkinc
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 
 def tip_angle_by_quadrature(alpha: float, eta: float) -> float:

@@ -17,8 +17,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from scipy.special import elliprf
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.rod import RodProperties
 from analytic.solver.general.span import SpanEnd, Trail, back_to_clamp, march
 from analytic.solver.general.states import Vibrissa

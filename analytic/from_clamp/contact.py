@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.clamp_end import ClampEnd
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Pose
 from analytic.problem.columns import SENSED, units
 from analytic.problem.readings import Readings

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import log_softmax, logsumexp, softmax
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 
 _MEMORY = np.array([0.5, 0.75, 0.87, 0.93, 0.965, 0.983, 0.992, 0.9965, 0.9995])
 _SIZES = np.array([0.1, 0.3, 1, 3, 10, 30, 1e2, 1e3, 1e4, 1e5])  # variance over that of the white

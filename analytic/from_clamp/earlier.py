@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
 
 _TOLERANCE = 1e-13
 _PLACES = np.linspace(0, 1, 129)  # among which the moment's first zero is looked for [L]

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.correlated import NoiseFound, likelihood
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError, unknown
 from analytic.problem.shown import Shown
 

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from analytic.from_clamp.phases import judge_phases
-from analytic.problem.arrays import Booleans
+from analytic.numerics.arrays import Booleans
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.readings import Readings
 

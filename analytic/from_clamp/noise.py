@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number, within

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import fdtrc, gammaincc
 
 from analytic.from_clamp.correlated import NoiseFound
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, require_readings
 

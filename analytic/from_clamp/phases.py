@@ -14,7 +14,7 @@ from analytic.from_clamp.noise import (
     reading_noise,
     resting_noise,
 )
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.readings import Readings
 

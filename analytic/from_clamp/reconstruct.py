@@ -22,7 +22,7 @@ from analytic.from_clamp.earlier import METHODS, NAMES, LoadedStations
 from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import judge_phases
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.problem.columns import SENSED, units
 from analytic.problem.errors import InputError, unknown
 from analytic.problem.readings import Readings, require_readings

@@ -19,7 +19,7 @@ from analytic.from_clamp.noise import (
 )
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
 from analytic.from_clamp.phases import Judgement, judge_phases
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.errors import InputError

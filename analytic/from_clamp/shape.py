@@ -5,8 +5,8 @@ import numpy as np
 from analytic.checks.integration import march
 from analytic.checks.of_two import touches_twice
 from analytic.from_clamp.contact import SweptVibrissa, located, shapes_turning
+from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
-from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings, require_readings
 

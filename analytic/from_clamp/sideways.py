@@ -40,7 +40,7 @@ So the clamp shows it: a sweep is held in its plane as long as `force_x` has not
 import numpy as np
 
 from analytic.from_clamp.contact import located
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.readings import Readings, require_readings
 
 

@@ -4,7 +4,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Integers
+from analytic.numerics.arrays import Booleans, Integers
 
 _Batch = TypeVar("_Batch", bound=tuple[Any, ...])
 

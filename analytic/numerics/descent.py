@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 
 def barring_forces(compliance: Floats, gaps: Floats, singular: float) -> Floats:

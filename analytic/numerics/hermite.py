@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 
 def hermite(share: Floats, begin: Floats, rate: Floats, end: Floats, end_rate: Floats) -> Floats:

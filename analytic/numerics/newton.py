@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 
 Misses: TypeAlias = Callable[[Floats, Integers], Floats]
 """Maps unknowns, shape (m, k), of the systems listed, shape (m,), to their misses, shape (m, k);

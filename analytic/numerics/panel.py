@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 NODES = 12  # of Gauss and Legendre on a panel
 POINTS, WEIGHTS = (v / 2 for v in legendre.leggauss(NODES))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a zero, relative
 _LEAST = 1e-300  # a zero of less is none

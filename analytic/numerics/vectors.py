@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]  # of x, y and z, in turn
 

@@ -10,7 +10,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebvander
 from numpy.polynomial.polyutils import trimcoef
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import floats
 

@@ -9,8 +9,8 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along, rescaled, sampled, values_at
-from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import LARGEST, positive, within
 

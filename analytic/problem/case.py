@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.clamp_path import ClampWay, Direction, Pose, Poses, Sweep, TurningWay, along_x
 from analytic.problem.contours.contour import Contour

@@ -5,8 +5,8 @@ Lengths in L, on the contour that the centreline feels.
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.roots import smooth_zeros
-from analytic.problem.arrays import Floats
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError

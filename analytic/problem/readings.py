@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SCHEMA, SENSED
 from analytic.problem.errors import InputError, Place, near, require, row_number

@@ -15,7 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.roots import zero, zeros
 from analytic.problem.along import Along
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Unloaded
 from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour, ContourPoint

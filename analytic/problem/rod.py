@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.numerics.panel import NODES, POINTS, TO_NODES, TO_SERIES, WEIGHTS, Panel
 from analytic.problem.along import Along, rescaled
-from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam, Unloaded
 
 _TAIL = 2  # coefficients

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SCHEMA
 from analytic.problem.errors import InputError, require, unknown

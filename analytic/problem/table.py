@@ -11,7 +11,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.columns import CONTACT, ODD, SENSED, WORDS
 from analytic.problem.errors import InputError, Place, row_number, unknown
 

@@ -13,8 +13,8 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.many import Contours
 from analytic.solver.equilibria import surplus_and_rate
 from analytic.solver.general.path import cells, phase_limits

@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from analytic.numerics.arrays import Floats, Integers
 from analytic.numerics.batches import take
 from analytic.numerics.newton import solve
-from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import COLUMNS

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 from scipy.special import ellipeinc, ellipkinc
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 _FEW = 150  # amplitudes; up to so many, two calls of SciPy's are faster than sixty of NumPy's
 _AT_ONCE = 8192  # amplitudes: what is computed on the way stays in the processor's cache

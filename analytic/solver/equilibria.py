@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipe, ellipk
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats, Integers
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.clamp_path import along_x
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, WORDS

@@ -14,10 +14,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
 from analytic.numerics.hermite import least_of_hermite
 from analytic.numerics.roots import Surroundings, smooth_zeros, zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.contours.many import Contours
 from analytic.solver.equilibria import equilibria_at, surplus_and_rate, within_reach

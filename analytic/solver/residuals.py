@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.checks.of_two import Reached, dimensionless, misses_of_two, touches_twice
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
 from analytic.solver.elastica import span_of_moment
 from analytic.solver.general.columns import Numbers, ReadingColumns, Units, without

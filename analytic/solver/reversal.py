@@ -8,9 +8,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 import pandas as pd
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.newton import Jacobian, Misses, solve
 from analytic.numerics.panel import POINTS, WEIGHTS
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import put, take
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.many import Contours
 from analytic.solver.branch import Branch
 from analytic.solver.equilibria import Equilibria, contact, contact_beside, equilibria_at, tip_rates

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 import numpy as np
 
 from analytic import InputError
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic.space import SpatialReadings

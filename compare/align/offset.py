@@ -9,7 +9,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, MEDIAN_OF_NORMAL, known_to
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.errors import require
 from analytic.problem.support import recorded_contours
 from compare.align.jumps import jumps

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.sense.record import Record, direction, inspect_record
 
 _ROWS = 400  # that two sweeps are laid over each other by

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FOOT
 from compare.align.jumps import LARGE, beside, jumps, sides

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from compare.align.offset import NoOffsetError, offset_fits
 from compare.sense.phases import Classification, classify
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, PHASES, Beam, Direction, InputError, Readings
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space import (
     Body,
     SpatialReadings,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.columns import units
 from analytic.space import SpatialReadings
 from compare.explain.fit import Suspect, suspects

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says
 from compare.align.stations import interpolant

@@ -8,7 +8,7 @@ from itertools import permutations, product
 import numpy as np
 
 from analytic.from_clamp.noise import scatter
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space import reconstruct_space, wrench_complaint
 from analytic.space.problem.readings import FOOT, FORCE, MOMENT
 from compare.align.frames import COMPONENTS, clamp_axes

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS
 from analytic.from_clamp.noise import largest, reading_noise, scatter
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from compare.explain.causes import slopes
 from compare.explain.one_or_two import CONVINCING, one_or_two
 from compare.judge.allowance import NoiseAllowance

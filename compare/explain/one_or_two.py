@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.explain.causes import Cause, physical_faults, sensor_faults
 from compare.explain.fit import Explanation, fitted
 from compare.explain.wiring import Misreading, about_the_origin, misread

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 
 _STATIONS = 10  # to an interval of the spline that the amplitude is
 _FEWEST = 20  # stations that it is worth taking from

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.shown import Shown
 from analytic.space import SpatialReadings
 from compare.judge.tolerances import Tolerances

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings, Sweep, solve_sweep, through_points
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says

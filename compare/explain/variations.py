@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings, polygon, solve_sweep, with_friction
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.quantities import QUANTITIES, shifted
 
 STEP = 1e-3

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.explain.fit import fitted
 
 # Units in those that they are taken for, or that are taken for them.

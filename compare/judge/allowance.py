@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
 from analytic.space.from_clamp.reconstruct import contacts_moved
 from compare.align.frames import COMPONENTS

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import Readings
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.problem.shown import Shown
 from analytic.space import SpatialReadings
 from compare.sense.noise import scales

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components

@@ -11,7 +11,7 @@ from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import known_to, zero_uncertainty
 from analytic.from_clamp.passes import Consistency, as_passes, consistency
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from compare.sense.noise import scales
 
 _STEPS = 4  # median steps of the foot that are averaged

@@ -15,7 +15,7 @@ from scipy.special import gammaincc
 from analytic import InputError
 from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import rounding
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 # Standard deviations of a slope of which nothing is taken off; 0.4 % are more by noise alone.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.from_clamp.noise import rounding, scatter
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 
 _JUMP = 0.1  # of the largest reading; more is no hum, and no step of a zero ...
 _SIGMAS = 6.0  # ... nor noise

@@ -7,7 +7,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from analytic import CLAMP_READINGS, Direction, InputError
 from analytic.from_clamp.noise import scatter
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from compare.read.drift import FEWEST
 from compare.read.loaded import loaded_from
 

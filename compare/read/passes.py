@@ -11,7 +11,7 @@ import pandas as pd
 from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.from_clamp.calibration.measured import check_size as check_decades
 from analytic.from_clamp.noise import rounding
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.errors import called
 from analytic.problem.table import as_numbers
 from compare.read import nonsense

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from analytic import CLAMP_READINGS, SENSED, Beam, Direction, InputError, Readings
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import as_numbers

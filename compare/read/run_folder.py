@@ -10,7 +10,7 @@ import pandas as pd
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from analytic import InputError, Readings
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.files import regular_file
 from analytic.space import SpatialReadings
 from compare.align.frames import Frame

@@ -7,7 +7,7 @@ import pandas as pd
 
 from analytic import PHASES, Readings, reconstruct
 from analytic.from_clamp.phases import judge_phases
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.problem.readings import require_readings
 from analytic.problem.table import says
 

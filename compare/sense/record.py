@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.from_clamp.noise import rounding
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.columns import units
 from analytic.problem.table import says
 from compare.sense.noise import NOTHING, scales

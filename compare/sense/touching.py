@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
 from analytic.space.from_clamp.reconstruct import component_noise, felt, least_force
 from analytic.space.problem.readings import FORCE, MOMENT

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic import Readings
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from compare.sense.phases import Classification
 
 TRANSITIONS = ("first_contact", "phase_b_start", "phase_b_end")

@@ -22,7 +22,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pydantic_core import to_json
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.files import SOFTWARE, write_whole
 from compare.show.document import Document, Table
 from compare.show.scene import SweepScene, corners_and_faces, normals

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space import Body
 from compare.comparison import Comparison, SpatialComparison
 from compare.explain.budget import Budget

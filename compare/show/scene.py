@@ -7,7 +7,7 @@ import pandas as pd
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
-from analytic.problem.arrays import Floats, Integers, Words
+from analytic.numerics.arrays import Floats, Integers, Words
 from analytic.problem.files import SOFTWARE
 from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
 from analytic.space.problem.bodies.support import spread

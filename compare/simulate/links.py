@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.simulate.rigidity import as_intended, is_curved, smooth_rigidity, tapers, tip_of
 from mujoco_models.inspect.measured import MeasuredBeam
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _SIZE = 7.0, 5.0  # inches

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from analytic import Beam
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.solver.elastica import frame, span
 from mujoco_models.inspect.measured import Geom, MeasuredBeam
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.simulate.remark import HARDEST_RUBBING
 from compare.simulate.rigidity import as_intended, flexibility, joint_arms, moving
 from mujoco_models.fix.edit import Edit, Insert, number

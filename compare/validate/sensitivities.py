@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, InputError, Sweep, solve_sweep
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.validate.stated import GAINS, INPUTS, Uncertainties, possible
 
 

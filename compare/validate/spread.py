@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammaincinv
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 COVERED = 0.9545
 """Share of right models whose disagreement stays within the expanded uncertainty."""

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, InputError
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import unknown
 from analytic.problem.numbers import within
 from analytic.problem.quantities import QUANTITIES

@@ -10,7 +10,7 @@ from pydantic import ConfigDict
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.correlated import estimate
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import require, unknown
 from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance

@@ -8,7 +8,7 @@ from scipy.optimize import brentq, root
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.solver.elastica import frame, span
 from analytic.space.checks.rod import Cantilever
 

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings, solve_sweep
 from analytic.from_clamp.earlier import METHODS, NAMES
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import unknown
 from analytic.problem.quantities import QUANTITIES
 from compare.commands import terminal

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, PHASES, Readings
-from analytic.problem.arrays import Integers
+from analytic.numerics.arrays import Integers
 from compare.sense.noise import with_noise
 from compare.sense.phases import classify, confusion
 from compare.sense.transitions import TRANSITIONS, locate_transitions

@@ -12,7 +12,7 @@ from typing import Any
 import dartpy
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from engines.agreement import State, Surface, hinges

@@ -20,7 +20,7 @@ from pydrake.multibody.tree import (
 )
 from pydrake.systems.framework import DiagramBuilder
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from engines.drake.touch import Beads, CompliantContact, DistanceContact, material
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.model.clamp import Clamp

@@ -26,7 +26,7 @@ from pydrake.multibody.plant import CoulombFriction, ExternallyAppliedSpatialFor
 from pydrake.multibody.tree import MultibodyForces, RigidBody
 from pydrake.systems.framework import Context
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 
 
 class Beads:

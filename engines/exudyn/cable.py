@@ -15,7 +15,7 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as item  # noqa: N813  # the library's own name
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.vibrissa import Vibrissa
 
 AXIAL_STIFFNESS = 1e6  # EI/L^2; a load of 10 stretches the cable by 1e-5

@@ -16,7 +16,7 @@ A tip that finds no place to stay has let go.
 import numpy as np
 from scipy.optimize import brentq
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.rest import first_touch
 from engines.agreement import Surface

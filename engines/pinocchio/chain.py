@@ -8,7 +8,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.obstacles.file_mesh import FileMesh

@@ -10,7 +10,7 @@ deviation is the spacing over sqrt(12) (Higham, Accuracy and Stability of Numeri
 import numpy as np
 from scipy.stats import multivariate_normal, norm
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.model.model import BeamModel
 
 # rad; a product of unit quaternions rounds each of two components three times, to half of 2**-24

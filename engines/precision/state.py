@@ -8,7 +8,7 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.model.model import BeamModel
 
 

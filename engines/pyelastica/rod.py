@@ -14,7 +14,7 @@ import elastica
 import numpy as np
 from scipy.linalg import solve_banded
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from engines.agreement import State, hinges
 from engines.pyelastica.contact import POINTS, Arcs, press, push

@@ -10,7 +10,7 @@ rounding.
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout, turned, vertices
 from mujoco_models.beams.links import Balls, about_z
 from mujoco_models.beams.protocol import FOOT, Furnish, bare

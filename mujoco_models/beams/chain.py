@@ -14,7 +14,7 @@ first hinge is h/24 nearer the clamp. The third part is the contact's: its link 
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import HingedLinks
 from mujoco_models.beams.protocol import Furnish, bare

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT, Furnish, bare
 

@@ -5,7 +5,7 @@ from typing import Protocol, TypeAlias
 
 import mujoco
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout
 
 # Moved by its place in the model. Not a mocap body: 3.17's cable measures its segments before the

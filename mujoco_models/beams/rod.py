@@ -13,7 +13,7 @@ from -h/2 to +h/2, makes one of second order.
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout, turned, vertices
 from mujoco_models.beams.links import HingedLinks, link_name
 from mujoco_models.beams.protocol import FOOT, Furnish, bare

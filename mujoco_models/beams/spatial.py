@@ -11,7 +11,7 @@ import math
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.links import Balls, HingedLinks, link_name
 from mujoco_models.beams.protocol import Furnish, Law, bare

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
-from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.support import Support
 

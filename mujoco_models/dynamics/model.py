@@ -6,7 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import Layout

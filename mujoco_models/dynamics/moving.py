@@ -7,7 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 
 _HALF_PERIOD = 0.5  # T1

@@ -5,7 +5,7 @@ from xml.etree.ElementTree import Comment, Element, SubElement, indent, tostring
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.export.whisker import PREFIX, Whisker

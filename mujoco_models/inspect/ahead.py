@@ -5,7 +5,7 @@ from copy import copy
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from mujoco_models.inspect.drive import holders
 from mujoco_models.inspect.parts import Parts
 from mujoco_models.inspect.touching import thickness

@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 
 _ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.inspect.drive import holders, joints_of, mover_of, welds_of
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.parts import Parts

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.linalg import eigh
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.held import Bending, HeldModel
 from mujoco_models.inspect.parts import Parts, axis_of

@@ -11,7 +11,7 @@ from copy import copy
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import holders
 from mujoco_models.inspect.held import Bending, HeldModel, lengths

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
 from mujoco_models.inspect.beside import check_constraints, check_tendons, limit_stiffness

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.shown import Shown
 from mujoco_models.inspect.drive import Reach
 from mujoco_models.inspect.hand import Hand

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError, unknown
 from mujoco_models.inspect.drive import holders as holders_of
 from mujoco_models.inspect.load import FORCE, TORQUE

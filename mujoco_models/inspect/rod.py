@@ -6,7 +6,7 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Integers
+from analytic.numerics.arrays import Integers
 from analytic.problem.errors import InputError
 
 Chain: TypeAlias = tuple[int, ...]

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from scipy.optimize import brentq
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.inspect.measured import Geom
 from mujoco_models.inspect.parts import Parts, axis_of, radius_of, size_of
 from mujoco_models.inspect.probe import Probe

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.clamp import Clamp

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.beams.layout import turned
 
 

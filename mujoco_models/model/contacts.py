@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.surface import CONTACT_GAP, Surface

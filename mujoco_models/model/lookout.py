@@ -5,7 +5,7 @@ from typing import Protocol
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.obstacles.protocol import GEOM, Obstacle

@@ -6,7 +6,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import turned
 from mujoco_models.beams.links import about_z

@@ -9,7 +9,7 @@ to the contour, whatever the configuration: the contact is then that of the link
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import OF_CURVATURE, Layout
 from mujoco_models.model.contacts import Contacts, slope_angle
 from mujoco_models.obstacles.protocol import Obstacle

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 
 IMPEDANCE = 0.9
 """MuJoCo's d, unless stated; with the stiffness it cancels out of the law at rest."""

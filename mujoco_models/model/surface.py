@@ -7,7 +7,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Integers
+from analytic.numerics.arrays import Booleans, Integers
 from mujoco_models.obstacles.corners import EDGE_PREFIX, Corners
 
 SIDE_PREFIX = "side"

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.beams.protocol import Beam
 
 _LOAD = 1.0  # EI/L^3; by which gravity grows from one state at rest to the next

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 
 EDGE_PREFIX = "edge"
 LINKS = 2  # the bit of contype and conaffinity by which links and edges collide

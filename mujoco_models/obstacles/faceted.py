@@ -5,7 +5,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.case import Case
 from mujoco_models.obstacles.protocol import GEOM, TOP, Obstacle, add_collider
 

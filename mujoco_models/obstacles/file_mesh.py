@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull, KDTree
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.errors import InputError

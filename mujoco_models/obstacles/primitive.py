@@ -12,7 +12,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.prism import Prism

@@ -13,7 +13,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Complexes, Floats, Integers
+from analytic.numerics.arrays import Complexes, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.corners import SHARP, Corners, ends_sharp, upright

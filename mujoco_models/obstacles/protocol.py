@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.obstacles.corners import Corners
 
 GEOM = "obstacle0"  # hardly a name in a user's own model; other objects have other numbers

@@ -11,7 +11,7 @@ from functools import cache
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.obstacles.protocol import add_collider
 
 # L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.model.spec import add_clamp_sensors, add_options, compiled

@@ -18,8 +18,8 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.surface import Surface
 

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.ellipsoid import Ellipsoid

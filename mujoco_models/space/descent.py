@@ -23,8 +23,8 @@ import mujoco
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.numerics.descent import barring_forces
-from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.linalg import eigvalsh_tridiagonal
 from scipy.linalg.lapack import dgesv, dgtsv, dpttrf, dsyev
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Feature
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import Law

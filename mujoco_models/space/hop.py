@@ -11,7 +11,7 @@ from itertools import chain
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.space.balance import State

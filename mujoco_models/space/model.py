@@ -6,7 +6,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import across
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name

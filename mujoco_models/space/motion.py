@@ -11,8 +11,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.walk import WalkEvent
-from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.space.balance import SHARE, Balance, State
 from mujoco_models.space.forecast import Forecast, Planar
 from mujoco_models.space.model import SpaceModel, Touch

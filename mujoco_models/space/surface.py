@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Feature
 from mujoco_models.space.model import SpaceModel, Touch
 

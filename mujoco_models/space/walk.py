@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.walk import WalkEvent, first_clear, first_touch, first_unlike
-from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
 from mujoco_models.space.hop import features_around, over_faces

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.numbers import finite
 from analytic.problem.support import Support

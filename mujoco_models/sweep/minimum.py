@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts

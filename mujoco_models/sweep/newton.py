@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Complexes, Floats, Integers
+from analytic.numerics.arrays import Booleans, Complexes, Floats, Integers
 from mujoco_models.model.balance import Mechanics
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.numerics import Numerics

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dpotrf
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.model.model import BeamModel
 
 _TURN = 1e-5  # rad, of the differences: good to its square, since both sides of the plane are alike

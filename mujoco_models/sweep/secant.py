@@ -9,7 +9,7 @@ from collections import deque
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 _AWAITED = 2  # steps, before there is anything to be seen
 _KEPT = 6  # differences of steps: in as many directions the stiffness may be off

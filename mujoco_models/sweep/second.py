@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.contacts import places_after
 from mujoco_models.sweep.state import State

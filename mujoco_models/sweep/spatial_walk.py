@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from mujoco_models.model.model import AT_REST, LONG_STEP, STEP, BeamModel
 from mujoco_models.sweep.numerics import Numerics

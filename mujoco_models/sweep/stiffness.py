@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dgttrf, dgttrs, dposv, dpttrf, dpttrs, dstebz, dsysv
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from mujoco_models.errors import DivergedError
 
 _LEAST_SHIFT = 0.02  # EI/L, times the number of joints: what makes it positive definite

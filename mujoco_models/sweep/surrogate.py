@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts

@@ -5,7 +5,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans
+from analytic.numerics.arrays import Booleans
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Pose
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import holders, joints_of, mover_of
 

@@ -5,7 +5,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel

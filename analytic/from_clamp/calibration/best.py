@@ -11,7 +11,7 @@ from analytic.from_clamp.calibration.unknowns import LAG, OFFSET
 from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
 from analytic.from_clamp.passes import ROUNDING, alike_by_chance
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError
 

@@ -20,7 +20,7 @@ from analytic.from_clamp.passes import (
     left_by_noise,
 )
 from analytic.from_clamp.reconstruct import Doubt, doubt, reconstruct
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
 from analytic.problem.errors import InputError, because, require

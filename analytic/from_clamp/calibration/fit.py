@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from analytic.from_clamp.calibration.measured import Measured
 from analytic.from_clamp.calibration.unknowns import OFFSET, Family, Sought, Unknown
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER

@@ -13,7 +13,7 @@ from analytic.from_clamp.noise import (
     resting_noise,
     zero_uncertainty,
 )
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.clamp_path import Direction
 from analytic.problem.columns import CLAMP_READINGS, SENSED, units

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError

@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
-from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.contours.profile import Profile
 from analytic.problem.errors import InputError

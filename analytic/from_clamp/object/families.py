@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from analytic.from_clamp.calibration.unknowns import Family, Number
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.contours.families import circle, ellipse
 from analytic.problem.contours.profile import Profile, of_curve
 

@@ -21,7 +21,7 @@ from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.object.families import families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency, left_by_noise
 from analytic.from_clamp.reconstruct import reconstruct, require_beam
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Sweep
 from analytic.problem.contours.families import circle

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.contours.profile import Profile, of_curve
 from analytic.problem.numbers import finite, pair, positive
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.profile import Profile, unchecked
 

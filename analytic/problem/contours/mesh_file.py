@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path, regular_file
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.contours.contour import ConvexMesh
 from analytic.problem.contours.mesh_file import MeshBody, read_body
 from analytic.problem.contours.polygon import Polygon, polygon

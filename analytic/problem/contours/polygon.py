@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint, ConvexMesh
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import points_of, positive

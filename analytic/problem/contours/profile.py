@@ -7,7 +7,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import LARGEST, pair, positive

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.pair import Pair

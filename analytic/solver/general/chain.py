@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.balance import states_at

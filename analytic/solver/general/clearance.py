@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
 from analytic.numerics.roots import zeros
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.pair import Pair, places

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.clamp_path import Poses, Straight
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.balance import balance

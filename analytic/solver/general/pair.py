@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.general.span import Start, back_to_clamp
 from analytic.solver.general.states import InnerContact, States, Vibrissa

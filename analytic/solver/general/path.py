@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.hermite import hermite
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Poses
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import FirstTouch

@@ -35,9 +35,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipj, elliprd, gammaln
 
+from analytic.numerics.arrays import Floats, Integers
 from analytic.numerics.batches import put, take
 from analytic.numerics.panel import TO_NODES, WEIGHTS, Panel
-from analytic.problem.arrays import Floats, Integers
 from analytic.problem.rod import RodProperties
 
 _TINY = 1e-300  # instead of nothing, to divide by

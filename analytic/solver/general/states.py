@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.along import Along
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam, Unloaded
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import ContourPoint

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.newton import solve
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.clamp_path import Pose, Poses
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.balance import misses, rates_at, states_at

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
-from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.clamp_path import Poses
 from analytic.problem.columns import SECOND_CONTACT, STATUS_NUMBER

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import SOFTWARE, as_path, write_whole
 from analytic.problem.numbers import positive

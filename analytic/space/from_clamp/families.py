@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Body, across
 from analytic.space.problem.bodies.ellipsoid import ellipsoid, sphere
 from analytic.space.problem.bodies.prism import cylinder

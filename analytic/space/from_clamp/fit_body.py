@@ -15,7 +15,7 @@ from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, IDLE, MEDIAN_OF_NORMAL
 from analytic.from_clamp.passes import left_by_noise
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
 from analytic.space.from_clamp.reconstruct import (

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.from_clamp.contact import LONGEST
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, covering
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 from analytic.problem.shown import Shown
 from analytic.space.from_clamp.reconstruct import (

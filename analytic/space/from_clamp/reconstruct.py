@@ -9,7 +9,7 @@ import pandas as pd
 from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_bent_right
 from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering, scatter
 from analytic.from_clamp.passes import listed
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import require_plain

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.walk import first_clear, first_touch
-from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import direction, finite, floats, whole
 from analytic.space.problem.bodies.body import Body, Spot

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, Place, row_number
 from analytic.problem.files import as_path

@@ -7,8 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.walk import WalkEvent
-from analytic.problem.arrays import Floats
 from analytic.problem.recorder import AnyRecorder
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Feature, Spot, across
 from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.contact import APART, Contact, Scene

@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats
 from analytic.solver.elastica import frame, span, span_by_alpha, span_by_excess
 from analytic.solver.equilibria import tip_rates
 from analytic.space.problem.bodies.body import Body, Spot, across

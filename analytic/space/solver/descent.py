@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.descent import barring_forces
-from analytic.problem.arrays import Floats
 from analytic.space.checks.rod import integrate_rod
 from analytic.space.problem.bodies.body import Spot, across
 from analytic.space.solver.contact import APART, Contact, Scene

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.bodies.body import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at, settle, settle_whole

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.polynomial import Legendre, legendre
 from scipy.optimize import brentq
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats
 from analytic.space.solver.contact import Scene
 from analytic.space.solver.sliding import (
     BY_TRAVEL,

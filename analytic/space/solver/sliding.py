@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import across
 from analytic.space.solver.contact import APART, Contact, Loaded, Plane, Scene, loaded_part
 

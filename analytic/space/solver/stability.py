@@ -30,7 +30,7 @@ drops the vibrissa earlier.
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.solver.contact import APART, Contact, loaded_part
 
 _SHARPEST = 1e-12  # L, radius given to an edge when the vibrissa has none

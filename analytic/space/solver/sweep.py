@@ -8,7 +8,7 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from analytic.from_clamp.contact import contact_bent_right
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import require
 from analytic.solver.general.columns import engine

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.walk import WalkEvent
-from analytic.problem.arrays import Floats
 from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.branch import LAST, LOOSE, NOTED, Branch, Held
 from analytic.space.solver.contact import Scene

@@ -14,7 +14,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from analytic import InputError, Readings
-from analytic.problem.arrays import Integers, Words
+from analytic.numerics.arrays import Integers, Words
 from analytic.problem.files import SOFTWARE, whole_file, write_whole
 from analytic.space import SpatialReadings
 from compare.show import style

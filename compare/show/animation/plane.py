@@ -14,7 +14,7 @@ from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.patches import Polygon
 
 from analytic import CLAMP_READINGS, Readings, curvatures, deflected_shapes, reconstruct
-from analytic.problem.arrays import Floats, Words
+from analytic.numerics.arrays import Floats, Words
 from compare.sense.phases import classify
 from compare.show.animation.film import Part, framed, heading, write_film
 from compare.show.figures.over_foot import foot, shade_phases, unit

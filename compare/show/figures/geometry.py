@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from analytic import FittedObject, Readings, deflected_shapes, reconstruct
-from analytic.problem.arrays import Words
+from analytic.numerics.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
 from compare.show.figures.over_foot import draw, key_below, on_vibrissa, phase_handles

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.problem.arrays import Floats, Words
+from analytic.numerics.arrays import Floats, Words
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison
 from compare.sense.phases import Classification

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from analytic import CLAMP_READINGS, reconstruct
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.comparison import Comparison
 from compare.read.passes import Pass
 from compare.show import style

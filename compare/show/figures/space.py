@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
 from compare.comparison import SpatialComparison

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from analytic import NAMED_TABLES, InputError
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import unknown
 from compare.read.complaints import complaint, shown
 from compare.read.tables import PLACES

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import AfterValidator, ConfigDict, Field
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.read.quantities import FileName, Table, validated
 from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile

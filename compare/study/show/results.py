@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.study.grid.plan import Plan
 from compare.study.grid.study import BEAM
 

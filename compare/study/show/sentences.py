@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from compare.align.frames import COMPONENTS
 from compare.show.numbers import short
 from compare.study.grid.study import BEAM

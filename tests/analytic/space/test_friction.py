@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import root
 
 from analytic import Beam, Case, InputError, Sweep, catenary, polygon, solve_sweep
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.space import (
     Body,
     FootPath,

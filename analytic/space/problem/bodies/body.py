@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats
 
 _AXES = np.eye(3)
 

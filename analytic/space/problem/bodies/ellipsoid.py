@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import Vector, axes, positive, vector
 from analytic.space.problem.bodies.body import Body, Spot, flat_spot, grid_patches, sphere_grid

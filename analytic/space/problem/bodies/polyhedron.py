@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats, Integers
 from analytic.numerics.vectors import cross
-from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import hull_of, read_body
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import Vector, floats, positive, vector, within

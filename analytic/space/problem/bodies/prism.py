@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.polygon import Polygon
 from analytic.problem.errors import require

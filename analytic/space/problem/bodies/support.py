@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
 from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches, sphere_grid
