@@ -106,7 +106,9 @@ def test_a_calibration_finds_the_lag_and_writes_the_case(rig, tmp_path):
     value = float(case["beam"]["flexural_rigidity"].split()[0])
     assert value == pytest.approx(found["flexural_rigidity"]["value"], rel=1e-8)
     assert case["profile"] == tomllib.loads(CASE)["profile"]
-    assert "N m^2" in case["uncertainty"]["flexural_rigidity"]["standard"]
+    width = found["flexural_rigidity"]["highest"] - found["flexural_rigidity"]["lowest"]
+    standard, unit = case["uncertainty"]["flexural_rigidity"]["standard"].split(maxsplit=1)
+    assert (float(standard), unit) == (pytest.approx(width / 2 / 1.96, rel=1e-4), "N m^2")
     (tmp_path / "found" / "case.toml").write_text("# my own\n")
     vibrissa(*words, "--out", "found", cwd=tmp_path).refused("must be free, or from an earlier run")
 
