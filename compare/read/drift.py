@@ -20,6 +20,7 @@ from analytic.numerics.arrays import Booleans, Floats
 FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 # Standard deviations of a slope of which nothing is taken off; 0.4 % are more by noise alone.
 _CLEARLY = 3.0
+_SHOWN = 30  # rows of all stretches: what fewer are off their lines is no measure of the noise
 _BY_CHANCE = 0.01  # probability of slopes that differ so much; less is a drift that bends
 # Times the drift is what bends are like before any slope is seen: a warming sensor's, exp(-4 u)
 # over the pass, has 2.3 and 0.9, a parabola that goes up and half of the way down again has 4.
@@ -126,7 +127,8 @@ class Bent(NamedTuple):
 def bent(zeros: Sequence[Zero]) -> list[Bent]:
     """What the drift of all passes of a rig has besides lines."""
     # Noise is of one kind in all passes, which show more of it than two short stretches.
-    slopes, variances = _slopes([stretch for one in zeros for stretch in one.stretches])
+    stretches = [stretch for one in zeros for stretch in one.stretches]
+    slopes, variances = _slopes(stretches)
     slopes, variances = slopes.reshape(-1, 2, 3), variances.reshape(-1, 2, 3)
     means = np.array([one.uncertainty for one in zeros])
     ways = np.array([np.diff([x.foot_x.mean() for x in one.stretches]) for one in zeros])
@@ -136,7 +138,8 @@ def bent(zeros: Sequence[Zero]) -> list[Bent]:
     sizes = np.sqrt(np.maximum(squares, np.finfo(float).tiny))
     mean, of_mean = _weighted(bends, sizes**2)
     alike = _no_chance(mean / np.sqrt(of_mean), mean.size)  # what all passes have shows first
-    shows = alike or _no_chance(bends / sizes, bends.size)
+    shows = sum(len(one.foot_x) for one in stretches) >= _SHOWN
+    shows = shows and (alike or _no_chance(bends / sizes, bends.size))
     excess = np.zeros_like(mean)
     freedom = bends.size - mean.size
     if freedom and _no_chance((bends - mean) / sizes, freedom):  # each pass bends by its own

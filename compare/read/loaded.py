@@ -8,6 +8,7 @@ from analytic.numerics.arrays import Booleans, Floats
 _JUMP = 0.1  # of the largest reading; more is no hum, and no step of a zero ...
 _SIGMAS = 6.0  # ... nor noise
 _FEWEST = 5  # rows of a level, and behind the stretch
+_FEW = 10  # rows: fewer show no noise of their own, and have that of the whole pass
 _MOST = 200  # rows among which a rise is looked for: means of more
 _STEEP = 0.5  # of the largest reading over the pass: a zero drifts less steeply
 _EXACT = 1e-4  # of the largest reading; no noise is taken to be less
@@ -24,7 +25,7 @@ def loaded_from(way: Floats, values: Floats, here: Booleans) -> tuple[float, flo
     The way begins at the end of the pass where the stretch is, and grows.
     """
     known = np.isfinite(values).all(axis=0)
-    if (here & known).sum() < 2 * _FEWEST:
+    if (here & known).sum() < _FEWEST:
         return None
     way, values, here = way[known], values[:, known], here[known]
     from_rest = values - np.median(values[:, here], axis=1, keepdims=True)
@@ -52,9 +53,10 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     go on so in the same ratio. A drift is less steep, and noise does not go on.
     """
     length, steepest = float(way[here].max()), _STEEP / float(np.ptp(way))
-    behind, further = (~here & (way <= times * length) for times in (2, 3))
-    if behind.sum() < _FEWEST:
+    if (~here).sum() < _FEWEST:
         return None
+    beside = float(np.sort(way[~here])[_FEWEST - 1]) - length
+    behind, further = (~here & (way <= length + max(n * length, beside)) for n in (1, 2))
     parts = np.array_split(np.vstack([way[here], rows[:, here]]), min(_MOST, here.sum()), axis=1)
     x, *others = np.transpose([part.mean(axis=1) for part in parts])
     y = np.array(others)
@@ -65,14 +67,18 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     ways = np.maximum(x - places[:, None], 0.0)
     slopes, left = _fitted(ways, y)
     of_step = _fitted(np.sign(ways), y)[1]  # of a zero that the sensor has from there on
+    noise = exact + np.square([[scatter(row)] for row in rows])
     gain, by_step = (
-        len(x) * np.log((free + exact) / (z + exact)).sum(axis=0) for z in (left, of_step)
+        ((free - z) / noise if len(x) < _FEW else np.log((free + exact) / (z + exact))).sum(axis=0)
+        * len(x)
+        for z in (left, of_step)
     )
     best = int(np.argmax(gain))
     inside, on = slopes[:, best], _fitted(way[None, behind], rows[:, behind])[0][:, 0]
     along = float(inside @ on)
     least, most = (times * float(on @ on) for times in _AS_STEEP)
-    as_one = along**2 > float(_ALONG**2 * (inside @ inside) * (on @ on))
+    by_noise = float(noise.sum() / np.sum((ways[best] - ways[best].mean()) ** 2))
+    as_one = along**2 > float(_ALONG**2 * (inside @ inside - by_noise) * (on @ on))
     goes_on = least < along < most and as_one
     level = y[:, x <= places[best]].mean(axis=1, keepdims=True)
     rise = inside @ inside * (length - places[best])

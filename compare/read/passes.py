@@ -276,8 +276,12 @@ def _straightened(passes: list[Pass]) -> list[Pass]:
 
 
 def _without(one: Pass, curve: Bent) -> Pass:
-    readings = one.readings
+    readings, fault = one.readings, one.fault
     values = _read(readings) - curve.away
+    try:
+        nonsense.check_drift(np.abs(curve.away).max(axis=1), values, one.name)
+    except InputError as error:
+        fault = error
     more = curve.uncertainty if curve.shows else 0.0  # a curve is lopsided, and no parabola
     uncertain = np.hypot(one.drawn.uncertainty, more)
     within = (one.drawn.share >= 0) & (one.drawn.share <= 1)
@@ -292,7 +296,8 @@ def _without(one: Pass, curve: Bent) -> Pass:
             "bend_uncertainty": _by_reading(middle.tolist()),
         },
     )
-    return replace(one, readings=cleared, taken=one.taken + curve.away, bends=curve.shows)
+    taken = one.taken + curve.away
+    return replace(one, readings=cleared, taken=taken, bends=curve.shows, fault=fault)
 
 
 def swept_alike(passes: Sequence[Pass]) -> list[list[Pass]]:

@@ -67,6 +67,17 @@ def test_a_straight_drift_stays_a_line(memory, rigs):
     assert np.mean(shown) <= 0.05
 
 
+def test_few_rows_show_no_curve():
+    """Some loaded ones amid noise were taken for one: 0.3 of the largest reading was taken off."""
+    some, rng = np.arange(0, ROWS, 8), np.random.default_rng(0)
+    values = NOISE * rng.standard_normal((3, len(some)))
+    values += np.maximum(0.08 - WAY[some], 0.0)  # as if it were loaded at the beginning
+    free = {which: here[some] for which, here in FREE.items()}
+    (curve,) = bent([zero_of(WAY[some], values, free, "pass")])
+    assert not curve.shows and not curve.away.any()
+    assert np.all(curve.uncertainty > NOISE)
+
+
 def test_one_stretch_that_drifts_says_so_and_noise_does_not():
     rng, only = np.random.default_rng(0), {"free_before": WAY < 0.08}
     noise = NOISE * rng.standard_normal((3, ROWS))
