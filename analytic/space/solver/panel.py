@@ -222,7 +222,9 @@ def _each_settled(
     """States without friction, from the last one on, which fails first."""
     found = []
     for state, amount in zip(near[::-1], amounts[::-1], strict=True):
-        settled = law.settled(scene, state, by, amount, _NEARLY)
+        # The less it is bent the less it takes to turn the plane in which it is.
+        enough = max(_NEARLY * min(1.0, abs(state.rotation)), _AT_REST)
+        settled = law.settled(scene, state, by, amount, enough)
         if settled is None:
             return None
         found.append(settled)
