@@ -20,6 +20,7 @@ _ANY = 1.0  # L; the parallel surface does not matter here
 _UPRIGHT = 1e-12  # rad
 _CLOSEST = 1e-13  # L, of the way
 _EXACT = 1e-15  # L, of the way
+_DEEPEST = 1e-10  # L, along the vibrissa
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +116,7 @@ class Gap(NamedTuple):
 
 def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
     """Distance between the body and the straight vibrissa of length 1: convex along it."""
-    from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
+    from scipy.optimize import brentq, minimize_scalar  # slow to load; stating a case needs none
 
     def rise(s: float) -> float:
         spot = body.nearest(foot + s * tangent, _ANY)
@@ -129,6 +130,15 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
     else:
         s = float(brentq(rise, 0.0, 1.0, xtol=1e-15, rtol=9e-16))
     spot = body.nearest(foot + s * tangent, _ANY)
+    if spot.distance <= 0:  # within it no normal shows the way to where it is deepest
+
+        def distance(s: float) -> float:
+            return body.nearest(foot + s * tangent, _ANY).distance
+
+        exactly = {"xatol": _DEEPEST}
+        within = minimize_scalar(distance, bounds=(0, 1), method="bounded", options=exactly)
+        s = min(1.0, 0.0, float(within.x), key=distance)
+        spot = body.nearest(foot + s * tangent, _ANY)
     return Gap(spot.distance - radius, s, spot)
 
 
