@@ -116,7 +116,10 @@ class Gap(NamedTuple):
 
 def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
     """Distance between the body and the straight vibrissa of length 1: convex along it."""
-    from scipy.optimize import brentq, minimize_scalar  # slow to load; stating a case needs none
+    from scipy.optimize import (
+        brentq,
+        fminbound,
+    )  # slow to load, and stating a case needs none of it
 
     def rise(s: float) -> float:
         spot = body.nearest(foot + s * tangent, _ANY)
@@ -135,9 +138,8 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
         def distance(s: float) -> float:
             return body.nearest(foot + s * tangent, _ANY).distance
 
-        exactly = {"xatol": _DEEPEST}
-        within = minimize_scalar(distance, bounds=(0, 1), method="bounded", options=exactly)
-        s = min(1.0, 0.0, float(within.x), key=distance)
+        within = float(fminbound(distance, 0.0, 1.0, xtol=_DEEPEST))
+        s = min(1.0, 0.0, within, key=distance)
         spot = body.nearest(foot + s * tangent, _ANY)
     return Gap(spot.distance - radius, s, spot)
 
