@@ -67,7 +67,7 @@ def _rise(way: Floats, rows: Floats, here: Booleans) -> tuple[float, float] | No
     ways = np.maximum(x - places[:, None], 0.0)
     slopes, left = _fitted(ways, y)
     of_step = _fitted(np.sign(ways), y)[1]  # of a zero that the sensor has from there on
-    noise = exact + np.square([[scatter(row)] for row in rows])
+    noise = exact + np.square([[scatter(row)] for row in rows]) * len(x) / here.sum()  # of a mean
     gain, by_step = (
         ((free - z) / noise if len(x) < _FEW else np.log((free + exact) / (z + exact))).sum(axis=0)
         * len(x)
