@@ -20,7 +20,6 @@ _ANY = 1.0  # L; the parallel surface does not matter here
 _UPRIGHT = 1e-12  # rad
 _CLOSEST = 1e-13  # L, of the way
 _EXACT = 1e-15  # L, of the way
-_DEEPEST = 1e-10  # L, along the vibrissa
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,14 +115,10 @@ class Gap(NamedTuple):
 
 def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
     """Distance between the body and the straight vibrissa of length 1: convex along it."""
-    from scipy.optimize import (
-        brentq,
-        fminbound,
-    )  # slow to load, and stating a case needs none of it
+    from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
 
     def rise(s: float) -> float:
-        spot = body.nearest(foot + s * tangent, _ANY)
-        return float(spot.normal @ tangent) if spot.distance > 0 else 0.0
+        return float(body.nearest(foot + s * tangent, _ANY).normal @ tangent)
 
     ends = rise(0.0), rise(1.0)
     if ends[1] <= 0:
@@ -133,14 +128,6 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
     else:
         s = float(brentq(rise, 0.0, 1.0, xtol=1e-15, rtol=9e-16))
     spot = body.nearest(foot + s * tangent, _ANY)
-    if spot.distance <= 0:  # within it no normal shows the way to where it is deepest
-
-        def distance(s: float) -> float:
-            return body.nearest(foot + s * tangent, _ANY).distance
-
-        within = float(fminbound(distance, 0.0, 1.0, xtol=_DEEPEST))
-        s = min(1.0, 0.0, within, key=distance)
-        spot = body.nearest(foot + s * tangent, _ANY)
     return Gap(spot.distance - radius, s, spot)
 
 

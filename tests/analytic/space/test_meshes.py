@@ -57,13 +57,14 @@ def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
     random = np.random.default_rng(0)
     mesh = trimesh.convex.convex_hull(random.normal(size=(60, 3)) * [1, 0.5, 2])
     body = convex_mesh(saved(mesh, tmp_path, "body.ply"))
-    for x in 4 * random.normal(size=(200, 3)):
+    within = 0
+    for x in np.repeat([[4], [0.5]], 100, axis=0) * random.normal(size=(200, 3)):
         spot = body.nearest(x, 0.25)
-        if spot.distance <= 0:
-            continue
+        within += spot.distance < 0
         best = trimesh.triangles.closest_point(mesh.triangles, np.tile(x, (len(mesh.faces), 1)))
-        assert spot.distance == pytest.approx(np.linalg.norm(best - x, axis=1).min(), rel=1e-5)
+        assert abs(spot.distance) == pytest.approx(np.linalg.norm(best - x, axis=1).min(), rel=1e-5)
         assert np.abs(spot.point + spot.distance * spot.normal - x).max() < 1e-12
+    assert within > 50
 
 
 def test_next_to_an_edge_the_nearest_point_is_on_the_right_side_of_it():

@@ -52,7 +52,8 @@ class Body(ABC):
         Parameters
         ----------
         x : array, shape (3,)
-            A point outside [length]; of one inside only the sign of the distance is right.
+            A point outside [length]. Of one inside the distance has the right sign, and falls along
+            the normal inwards.
         apart : float
             Distance of the parallel surface that `Spot.turning` belongs to, positive [length].
 
@@ -96,7 +97,7 @@ class Body(ABC):
 
 
 def flat_spot(x: Floats, normal: Floats, height: float) -> Spot:
-    """Below a point on a plane; without a normal, of a point that lies inside a body."""
+    """Below a point on a plane."""
     return Spot(x - height * normal, normal, height, np.zeros((3, 3)))
 
 

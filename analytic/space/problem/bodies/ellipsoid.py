@@ -32,7 +32,8 @@ class Ellipsoid(Body):
         inside = float(y @ (y / squares))
         if inside <= 1:
             inward = (math.sqrt(inside) - 1) * float(self.semi_axes.min())
-            return flat_spot(x, np.zeros(3), inward)
+            rise = y / squares if inside else np.eye(3)[self.semi_axes.argmin()]
+            return flat_spot(x, rise / math.sqrt(rise @ rise) @ self.frame, inward)
         multiplier = _multiplier((squares * y * y).tolist(), squares.tolist())
         gradient = y / (squares + multiplier)
         steepness = math.sqrt(gradient @ gradient)

@@ -65,7 +65,7 @@ class Polyhedron(Body):
         ahead = self.normals @ x - self.heights
         face = int(np.argmax(ahead))
         if ahead[face] <= 0:
-            return flat_spot(x, np.zeros(3), float(ahead[face]))
+            return flat_spot(x, self.normals[face], float(ahead[face]))
         tried = np.array([face])
         best = np.inf
         while True:
