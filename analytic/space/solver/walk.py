@@ -50,7 +50,7 @@ class Walk:
                     at, contact = touch, self._branch.begin(touch)
                     self._note("touch", touch)
                     if contact is None:
-                        touch, unknown_until = self._clear_of(at)
+                        touch, unknown_until = self._clear_of(at + 10 * _CLOSE)
                         status = "slipped off"
                         if self._rubs:  # it is dragged along to where it would be clear, too
                             unknown_until, status = np.inf if touch is None else touch, "sticks"
@@ -71,6 +71,8 @@ class Walk:
                 touch, unknown_until = self._clear_of(at)
                 if status == "ok":
                     unknown_until = at
+                elif status == "diverged":  # it may hold on long after the straight one is clear
+                    touch, unknown_until = None, np.inf
                 elif elsewhere:
                     unknown_until = np.inf if touch is None else touch
                 contact = None
