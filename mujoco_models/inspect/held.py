@@ -42,7 +42,7 @@ class Bending:
 
 
 class HeldModel:
-    """A model whose foot is held, without contacts and gravity, and loads on the tip.
+    """A model whose foot is held, without contacts, gravity and limits, and loads on the tip.
 
     Springs, constraints and sensors that a flag switches off are on: the flag is a fault itself.
     """
@@ -58,6 +58,7 @@ class HeldModel:
         self.model.opt.gravity[:] = 0
         self.model.opt.disableflags &= ~_STATED
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+        self.model.jnt_limited[np.isin(model.jnt_bodyid, parts.chain)] = 0
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
-from mujoco_models.inspect.beside import check_constraints, check_tendons, limit_stiffness
+from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
     drive_of,
     friction_loss,
@@ -43,6 +43,7 @@ from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_MOST_LOADS = (0.0, *_LOADS, 20.0)  # as the catenary bends it, 6.2/L at the clamp
 _TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _WAY = 2.0  # L; of the foot in it
 _PRESSES = 3.0  # EI/L^2; the largest force of it
@@ -158,8 +159,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
         friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
-        limits=_limits(model, parts),
-        limit_stiffness=limit_stiffness(model, parts),
+        limits=_limits(held, model, axes[0], unit),
     )
 
 
@@ -308,11 +308,29 @@ def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:
     return "plugin" if parts.plugin else "joints"
 
 
-def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
-    joints = np.flatnonzero(np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1))
-    if not joints.size:
-        return ()
-    return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+def _limits(held: Held, model: mujoco.MjModel, way: Floats, unit: float) -> tuple[float, ...]:
+    """How far joints' limits move the tip, where loads bend it along a way, and the other way."""
+    if not model.jnt_limited[np.isin(model.jnt_bodyid, held.parts.chain)].any():
+        return 0.0, 0.0
+    limited, found = hold(model, held.parts), []
+    limited.model.jnt_limited[:] = model.jnt_limited
+    for across in (unit * way, -unit * way):
+        found.append(max(_apart(held, limited, load_ * across) for load_ in _MOST_LOADS))
+        held.unload()
+        limited.set_back()
+    return tuple(found)
+
+
+def _apart(free: Held, limited: Held, force: Floats) -> float:
+    """How far a force brings the tips from each other; infinite if limits come to no rest."""
+    for held in (free, limited):
+        held.load(force, np.zeros(3))
+    free.rest()
+    try:
+        limited.rest()
+    except InputError:
+        return math.inf
+    return float(np.linalg.norm(free.tip - limited.tip))
 
 
 def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:

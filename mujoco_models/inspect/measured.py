@@ -182,9 +182,8 @@ class MeasuredBeam(Shown):
     friction_loss : float
         The largest moment by which friction holds a joint as fast as it turns in a sweep.
     limits : tuple of float
-        The smallest turn at which a joint of the vibrissa is limited [rad]; empty without any.
-    limit_stiffness : float
-        Moment over turn past such a limit.
+        How far limits of its joints move the tip where it is bent as by the sweep, and bent the
+        other way [length].
     """
 
     model: str
@@ -232,7 +231,6 @@ class MeasuredBeam(Shown):
     cone: ConeKind
     friction_loss: float
     limits: tuple[float, ...]
-    limit_stiffness: float
 
     @property
     def natural_curvature(self) -> float:

@@ -346,6 +346,26 @@ def test_a_change_of_the_text_is_named_as_far_as_it_matters(tmp_path, old, new, 
     assert (subject in {one.subject for one in said}) is named
 
 
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [("-0.01 1", ["fault"]), ("0 1", ["fault"]), ("-1 0.01", ["note"]), ("-1 1", [])],
+)
+def test_limits_are_those_of_the_side_to_which_a_sweep_bends(tmp_path, ends, said):
+    """The larger end was looked at, and at its end a joint seemed half as stiff, or twice."""
+    before = changed(tmp_path, OnRail(), (HINGE, f'<joint range="{ends}" axis'))
+    assert [one.kind for one in before.remarks if one.subject == "limits"] == said
+    assert faults_in(before) == ({"limits"} if said == ["fault"] else set())
+    assert fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection.sound
+
+
+@rods
+def test_limits_of_a_rod_are_those_of_a_default(tmp_path):
+    path = Rod(edges=12).write(tmp_path)
+    default = '<default><joint range="-0.001 0.001"/></default><worldbody>'
+    path.write_text(path.read_text().replace("<worldbody>", default))
+    assert "limits" in faults_in(Inspection(inspect_model(path)))
+
+
 def test_a_sensor_that_reads_nothing_is_not_where_the_load_goes(tmp_path):
     """Not by a weld, which it has none of."""
     aside = OnRail(beside='<body name="other"><site name="there"/></body>')
