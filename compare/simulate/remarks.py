@@ -111,20 +111,10 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
                      f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
-    most = _ELASTICA if found.linear else _NONLINEAR
-    if abs(off) <= RIGIDITY and error > most:
-        straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
+    if abs(off) <= RIGIDITY and error > _ELASTICA:
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
-                     "cantilever",
-                     "take more links" if found.linear else "its springs stiffen as they turn",
-                     () if found.linear else treatment.stiffened(found, straight))  # fmt: skip
-    for moved, (kind, bends) in zip(found.limits, _WAYS, strict=True):
-        if moved > _NONLINEAR * found.length:
-            yield Remark(kind, "limits", "those of its joints move the tip by up to "
-                         f"{moved / found.length:.1e} L {bends}",
-                         "" if found.springs != "flex" else "take their default's range away",
-                         treatment.joints(found, limited="false"))  # fmt: skip
-            break
+                     "cantilever", "take more links")  # fmt: skip
+    yield from _beyond_springs(found)
     stretch = found.stretch * FORCE * as_intended(found) / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
@@ -137,6 +127,23 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
                      "in each: the vibrissa stays bent",
                      edits=(*treatment.joints(found, frictionloss="0"),))  # fmt: skip
+
+
+def _beyond_springs(found: MeasuredBeam) -> Iterator[Remark]:
+    """What a joint has beyond a linear spring."""
+    linear = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
+    for subject, ways, what, remedy, edits in (
+        ("limits", found.limits, "those of its joints move",
+         "" if found.springs != "flex" else "take their default's range away",
+         treatment.joints(found, limited="false")),
+        ("large bending", found.stiffening, "its springs are not linear, which moves", "",
+         treatment.stiffened(found, linear)),
+    ):  # fmt: skip
+        for moved, (kind, bends) in zip(ways, _WAYS, strict=True):
+            if moved > _NONLINEAR * found.length:
+                far = f"by up to {moved / found.length:.1e} L" if moved < np.inf else "without end"
+                yield Remark(kind, subject, f"{what} the tip {far} {bends}", remedy, edits)
+                break
 
 
 def _cause(found: MeasuredBeam, first: float) -> str:

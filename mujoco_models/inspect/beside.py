@@ -23,7 +23,7 @@ def check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
 def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
     """Raise InputError where a tendon holds the vibrissa beside its springs.
 
-    But for a spring on joints, which is one of theirs.
+    But for a linear spring on joints, which is one of theirs.
     """
     driven = model.actuator_trnid[model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON, 0]
     coupled = (model.eq_type == mujoco.mjtEq.mjEQ_TENDON) & model.eq_active0
@@ -36,7 +36,9 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
             model.jnt_bodyid[numbers] if on_joints
             else model.site_bodyid[numbers[kinds == mujoco.mjtWrap.mjWRAP_SITE]]
         )  # fmt: skip
-        springy = model.tendon_stiffness[tendon] != 0 and not on_joints
+        more = getattr(model, "tendon_stiffnesspoly", np.zeros((model.ntendon, 1)))[tendon].any()
+        linear = on_joints and np.ptp(model.tendon_lengthspring[tendon]) == 0 and not more
+        springy = model.tendon_stiffness[tendon] != 0 and not linear
         holds = springy or model.tendon_limited[tendon] or model.tendon_frictionloss[tendon] > 0
         mine = set(model.body_weldid[bodies].tolist()).intersection(parts.chain)
         if mine and (holds or tendon in driven or tendon in ends):

@@ -23,7 +23,7 @@ from mujoco_models.inspect.drive import (
     slides,
 )
 from mujoco_models.inspect.hand import measure_hand, on_weld
-from mujoco_models.inspect.held import lengths
+from mujoco_models.inspect.held import BEYOND, lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
@@ -136,7 +136,6 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         undone=_undone(model) * period**4 / (mass * length**2),
         conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
-        linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
         sag=sag,
@@ -159,7 +158,10 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
         friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
-        limits=_limits(held, model, axes[0], unit),
+        **{
+            name: _moved(held, model, field, axes[0] * unit)
+            for name, field in zip(("limits", "stiffening"), BEYOND, strict=True)
+        },
     )
 
 
@@ -230,11 +232,6 @@ def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float
 
 def _aside(points: Floats, direction: Floats) -> Floats:
     return np.asarray(points - np.outer(points @ direction, direction))
-
-
-def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
-    terms = getattr(model, "jnt_stiffnesspoly", np.zeros((model.njnt, 1)))
-    return not terms[np.isin(model.jnt_bodyid, parts.chain)].any()
 
 
 def _joints(
@@ -308,29 +305,31 @@ def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:
     return "plugin" if parts.plugin else "joints"
 
 
-def _limits(held: Held, model: mujoco.MjModel, way: Floats, unit: float) -> tuple[float, ...]:
-    """How far joints' limits move the tip, where loads bend it along a way, and the other way."""
-    if not model.jnt_limited[np.isin(model.jnt_bodyid, held.parts.chain)].any():
+def _moved(held: Held, model: mujoco.MjModel, field: str, force: Floats) -> tuple[float, float]:
+    """How far what is beyond linear springs moves the tip, bent by a force, and the other way."""
+    own, joints = getattr(model, field, None), np.isin(model.jnt_bodyid, held.parts.chain)
+    if own is None or not own[joints].any():
         return 0.0, 0.0
-    limited, found = hold(model, held.parts), []
-    limited.model.jnt_limited[:] = model.jnt_limited
-    for across in (unit * way, -unit * way):
-        found.append(max(_apart(held, limited, load_ * across) for load_ in _MOST_LOADS))
+    stated = hold(model, held.parts)
+    getattr(stated.model, field)[:] = own
+    found = []
+    for sense in (1, -1):
+        found.append(max(_apart(held, stated, load_ * sense * force) for load_ in _MOST_LOADS))
         held.unload()
-        limited.set_back()
-    return tuple(found)
+        stated.set_back()
+    return found[0], found[1]
 
 
-def _apart(free: Held, limited: Held, force: Floats) -> float:
-    """How far a force brings the tips from each other; infinite if limits come to no rest."""
-    for held in (free, limited):
-        held.load(force, np.zeros(3))
-    free.rest()
+def _apart(held: Held, stated: Held, force: Floats) -> float:
+    """How far the tips of two are from each other; infinite if the second comes to no rest."""
+    for one in (held, stated):
+        one.load(force, np.zeros(3))
+    held.rest()
     try:
-        limited.rest()
+        stated.rest()
     except InputError:
         return math.inf
-    return float(np.linalg.norm(free.tip - limited.tip))
+    return float(np.linalg.norm(held.tip - stated.tip))
 
 
 def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:
