@@ -73,6 +73,7 @@ class Geom:
     start: float  # arc lengths of its axis [length]
     end: float  # arc lengths of its axis [length]
     aside: float  # how far an end of its axis is from the vibrissa's [length]
+    aside_in_plane: float  # and without what of that is across the plane of the sweep
     radius: float  # [length]
     size: tuple[float, ...]  # MuJoCo's of a sphere, capsule or cylinder; of others empty
     rounded: bool  # whether its ends are round, and reach beyond its axis: a capsule

@@ -143,6 +143,9 @@ UNSEEN = 'contype="0" conaffinity="0" '
         ((TENTH, f"{BALL}{TENTH}{UNSEEN}"), "nothing can touch from s = 0.4"),
         ((TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}'), "'arm' stands out from the"),
         ((TENTH, f"{BALL}{TENTH}"), None),
+        # Swept so, one read 3 % off.
+        (('"0 0 0 0 0.05 0"', '".008 0 0 .008 0.05 0"'), "is 8.0e-03 L beside the vibrissa"),
+        (('"0 0 0 0 0.05 0"', '"0 0 .008 0 0.05 .008"'), None),
     ],
 )
 def test_what_touches_is_along_all_of_it(tmp_path, change, said):
