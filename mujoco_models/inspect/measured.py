@@ -50,6 +50,7 @@ class Joint:
 
     name: str  # the body's, or as ``"body 3"``
     numbers: tuple[int, ...]  # of the body's joints in the model
+    rigid: tuple[str, ...]  # bodies without a joint between this one and the next
     s: float  # its arc length from the clamp [length]
     # Length of the piece of beam that it stands for: half way to its neighbours [length].
     cell: float

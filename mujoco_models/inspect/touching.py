@@ -202,7 +202,7 @@ def _on_same_hand(model: mujoco.MjModel, parts: Parts) -> set[int]:
     """Geoms of bodies that move with the foot, without the vibrissa's."""
     root = model.body_rootid[model.geom_bodyid]
     same = np.flatnonzero((root == model.body_rootid[parts.foot]) & (root != 0))
-    of_chain = np.isin(model.geom_bodyid[same], parts.chain)
+    of_chain = np.isin(model.body_weldid[model.geom_bodyid[same]], parts.chain)
     return {*same[~of_chain].tolist()}
 
 

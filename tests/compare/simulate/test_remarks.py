@@ -17,6 +17,7 @@ from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain, OnRail
 from tests.mujoco_models.inspect.rods import Rod
 
+TENTH_JOINT = r'(?<=name="whisker10" pos="0 0.05 0">)<joint [^>]*>'
 CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
 SENSORS = {"force sensor", "torque sensor"}
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
@@ -108,6 +109,15 @@ def test_planted_mistakes_are_named_and_nothing_else(tmp_path, model, said):
     # One cause may show in two ways: both sensors share a site, and the joint at the clamp is felt
     # by the tip.
     assert len(subjects - SENSORS) <= 1, found
+
+
+def test_a_joint_that_is_missing_is_no_stiffness_of_its_neighbours(tmp_path):
+    """And what is fixed to a link is the vibrissa's own, which was in its way."""
+    path = OnRail().write(tmp_path)
+    path.write_text(re.sub(TENTH_JOINT, "", path.read_text()))
+    (said,) = Inspection(inspect_model(path)).faults
+    assert "'whisker10' has no joint" in said.text
+    assert not said.edits
 
 
 def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
