@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
 from analytic.problem.case import Case
-from analytic.problem.contours.profile import Profile
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.quantities import QUANTITIES
 
@@ -53,7 +53,7 @@ class Family:
 
     name: str
     kinds: tuple[Number, ...]
-    profile: Callable[[Floats], Profile]  # over L
+    profile: Callable[[Floats], Contour]  # over L
     # The numbers at which it is the contour of simpler ones, from these: where a fit starts.
     start: Callable[[Floats], Floats]
     simpler: tuple[str, ...] = ()  # the families of which these may be

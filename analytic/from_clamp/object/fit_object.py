@@ -267,7 +267,8 @@ def _band(
     angle = np.linspace(low, high, _BAND)
 
     def places(at: Floats) -> Floats:
-        return np.stack(family.profile(at).place(angle))
+        contour = family.profile(at)
+        return np.stack(contour.place(contour.parameter(angle)))
 
     here = places(numbers)
     steps = _STEP * np.eye(len(numbers))
