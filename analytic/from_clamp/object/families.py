@@ -90,7 +90,7 @@ def convex_between(lowest: float, highest: float) -> Family:
     kinds = (
         Number(f"x_at_{math.degrees(middle):.0f}_degrees", -_AWAY, _AWAY),
         Number(f"y_at_{math.degrees(middle):.0f}_degrees", -_AWAY, _AWAY),
-        *(Number(name, low, high) for name in degrees),
+        *(Number(name, low, high, possible=(True, True)) for name in degrees),
     )
     return Family("convex", kinds, profile, start, ("circle", "ellipse"))
 

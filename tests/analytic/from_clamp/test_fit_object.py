@@ -159,6 +159,14 @@ def test_the_family_is_chosen():
 
 
 @pytest.mark.slow
+def test_what_is_best_at_an_end_of_a_family_is_none_of_it():
+    """A rounded square: of exponent 8.0 +- 0.5 it was explained, with a semi-axis of 1.7 L."""
+    square = polygon([(-0.25, 1.4), (-0.2, 0.75), (0.2, 0.75), (0.25, 1.4)]).offset(0.1)
+    with pytest.raises(InputError, match=r"exponent .* = 8: must be inside 1.2 to 8; it is no"):
+        fit_object(swept(square), "superellipse")
+
+
+@pytest.mark.slow
 def test_a_wrong_object_is_not_excused_by_a_foot_that_jitters():
     """Two circles of 0.5 and 0.2 L: with a jitter of its own a single one explained them."""
     exact = solve_sweep(Case(Beam(), two_circles(0.5, 0.2, (0.0, 0.7)), Sweep(80)))
