@@ -10,7 +10,7 @@ from analytic.from_clamp.calibration.best import explained_by_noise, fitted_to_n
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.separating import Undistinguished, undistinguished
-from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, checked_unknowns
 from analytic.from_clamp.correlated import NoiseFound
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.passes import (
@@ -31,7 +31,6 @@ from analytic.problem.support import support_record
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_AT_THE_END = 1e-6  # from an end of what a number can be
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
 
@@ -203,8 +202,11 @@ def calibrate(
     fit = LeastSquaresFit(measured, case, kinds)
     try:
         fit, numbers, misfit, known = fitted_to_noise(fit, noise is not None)
-        for name, number in zip(names, numbers.tolist(), strict=True):
-            _check_inside(name, number, fit.sought(numbers))
+        for kind, number in zip(kinds, numbers.tolist(), strict=True):
+            if kind.is_no_such(number):
+                value = f"{kind.value(fit.sought(numbers)):g}"
+                remedy = "the object, the units or something else of the case is not as stated"
+                raise InputError(f"{kind.called} of the best fit", value, "a vibrissa's", remedy)
         covariance = known.covariance
         deviations = np.sqrt(np.diag(covariance))
         correlation = covariance / np.outer(deviations, deviations)
@@ -258,16 +260,6 @@ def doubt_of_case(readings: Readings, case: Case) -> Doubt | None:
     held = {**readings.provenance, "support": {}, **support_record(case.support)}
     of_case = replace(readings, beam=case.beam, provenance=held)
     return doubt(reconstruct(of_case), of_case, unsure=True)
-
-
-def _check_inside(name: str, number: float, sought: Sought) -> None:
-    """Refuse what is best at an end of what a number can be that the quantity has not."""
-    kind = UNKNOWNS[name]
-    for end, possible in zip((kind.lowest, kind.highest), kind.possible, strict=True):
-        if not possible and abs(number - end) < _AT_THE_END * max(1.0, abs(end)):
-            value = f"{kind.value(sought):g}"
-            remedy = "the object, the units or something else of the case is not as stated"
-            raise InputError(f"{name} of the best fit", value, "a vibrissa's", remedy)
 
 
 def _not_distinguished(

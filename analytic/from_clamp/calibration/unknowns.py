@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
 from analytic.problem.case import Case
-from analytic.problem.contours.profile import Profile
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.quantities import QUANTITIES
 
@@ -17,6 +17,7 @@ _MOST_BENT = 1.5  # 1/L, at rest
 _MOST_RIGID = 100.0  # times what the readings' magnitudes suggest
 _MOST_LEANT = 0.5  # rad
 _LONGEST_LAG = 0.1  # L
+_AT_THE_END = 1e-6  # from an end of what a number can be
 
 LAG = "lag"
 OFFSET = "offset"
@@ -40,11 +41,21 @@ class Number:
     lowest: float  # what it can be
     highest: float  # what it can be
     starts: tuple[float, ...] = ()  # from which a fit starts, beside that of the case
+    # Whether what it stands for can be as at either end: a clamp can be rigid, a side flat.
+    possible: tuple[bool, bool] = (False, False)
 
     @property
     def called(self) -> str:
         """What a user calls it."""
         return self.name
+
+    def is_no_such(self, number: float) -> bool:
+        """Whether it is at an end of what it can be that what it stands for has not."""
+        ends = zip((self.lowest, self.highest), self.possible, strict=True)
+        return any(
+            not possible and abs(number - end) < _AT_THE_END * max(1.0, abs(end))
+            for end, possible in ends
+        )
 
 
 @dataclass(frozen=True)
@@ -53,7 +64,7 @@ class Family:
 
     name: str
     kinds: tuple[Number, ...]
-    profile: Callable[[Floats], Profile]  # over L
+    profile: Callable[[Floats], Contour]  # over L
     # The numbers at which it is the contour of simpler ones, from these: where a fit starts.
     start: Callable[[Floats], Floats]
     simpler: tuple[str, ...] = ()  # the families of which these may be
@@ -64,8 +75,6 @@ class Unknown(Number):
     """A fitted quantity of the case, by its name in `QUANTITIES`, or an offset or a lag."""
 
     unit: Callable[[Case], float]  # of the quantity, in the case as it was given
-    # Whether the quantity itself can be as at either end: a clamp can be rigid.
-    possible: tuple[bool, bool] = (False, False)
     widest: float = 0.25  # half an interval that says something
     said: str = ""  # what a user calls the quantity, if that is another one
 

@@ -12,14 +12,14 @@ from analytic.from_clamp.calibration.unknowns import Family, Number
 from analytic.numerics.arrays import Floats
 from analytic.problem.contours.families import circle, ellipse
 from analytic.problem.contours.profile import Profile, of_curve
+from analytic.problem.contours.superellipse import Superellipse
 
 _SMALLEST, _LARGEST = 1e-3, 30.0  # of a size, over L
 _AWAY = 30.0  # of a place, over L
-_ANGULAR, _ROUND = 6.0, 1.2  # of a superellipse's exponent: nearly a rectangle, nearly a rhombus
+_ANGULAR, _ROUND = 8.0, 1.2  # of a superellipse's exponent: nearly a rectangle, nearly a rhombus
 _KNOTS = 7  # at which a convex contour has a radius of curvature of its own; two circles need them
 _GRID = 400  # intervals of slope angle, over which a convex contour is summed up
 _UPRIGHT = math.pi / 2
-_BESIDE = 1e-6  # rad from the axes, where a superellipse is flat or sharp
 
 
 _X, _Y = (Number(f"centre_{axis}", -_AWAY, _AWAY) for axis in "xy")
@@ -39,39 +39,8 @@ def _ellipse(numbers: Floats) -> Profile:
     return ellipse((across, upward), (x, y - upward))
 
 
-class _Superellipse(NamedTuple):
-    """|x/a|^n + |y/b|^n = 1, by its support function (|a sin|^q + |b cos|^q)^(1/q), q = n/(n-1)."""
-
-    across: float
-    upward: float
-    x: float
-    y: float
-    q: float
-
-    def powers(self, alpha: Floats) -> tuple[Floats, Floats, Floats]:
-        sine, cosine = np.abs(np.sin(alpha)), np.abs(np.cos(alpha))
-        return sine, cosine, (self.across * sine) ** self.q + (self.upward * cosine) ** self.q
-
-    def xi(self, alpha: Floats) -> Floats:
-        (sine, _, total), q = self.powers(alpha), self.q
-        along = np.sign(alpha) * self.across**q * sine ** (q - 1) * total ** (1 / q - 1)
-        return np.asarray(self.x + along)
-
-    def eta(self, alpha: Floats) -> Floats:
-        (_, cosine, total), q = self.powers(alpha), self.q
-        return np.asarray(self.y - self.upward**q * cosine ** (q - 1) * total ** (1 / q - 1))
-
-    def radius(self, alpha: Floats) -> Floats:
-        (sine, cosine, total), q = self.powers(alpha), self.q
-        product = np.maximum(sine, _BESIDE) * np.maximum(cosine, _BESIDE)
-        scale = (q - 1) * (self.across * self.upward) ** q
-        return np.asarray(scale * product ** (q - 2) * total ** (1 / q - 2))
-
-
-def _superellipse(numbers: Floats) -> Profile:
-    across, upward, x, y, exponent = numbers.tolist()
-    curve = _Superellipse(across, upward, x, y, exponent / (exponent - 1))
-    return of_curve(curve, _UPRIGHT, f"superellipse {across:g} by {upward:g}")
+def _superellipse(numbers: Floats) -> Superellipse:
+    return Superellipse(*numbers.tolist())
 
 
 class _Summed(NamedTuple):
@@ -121,7 +90,7 @@ def convex_between(lowest: float, highest: float) -> Family:
     kinds = (
         Number(f"x_at_{math.degrees(middle):.0f}_degrees", -_AWAY, _AWAY),
         Number(f"y_at_{math.degrees(middle):.0f}_degrees", -_AWAY, _AWAY),
-        *(Number(name, low, high) for name in degrees),
+        *(Number(name, low, high, possible=(True, True)) for name in degrees),
     )
     return Family("convex", kinds, profile, start, ("circle", "ellipse"))
 

@@ -16,7 +16,7 @@ from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size
 from analytic.from_clamp.calibration.unknowns import LAG, UNKNOWNS, Family, Unknown
 from analytic.from_clamp.correlated import Estimated
-from analytic.from_clamp.fitted import Fitted, check_family, likeliest
+from analytic.from_clamp.fitted import Fitted, NoFamilyError, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.from_clamp.object.families import families
 from analytic.from_clamp.passes import Consistency, as_passes, consistency, left_by_noise
@@ -236,6 +236,11 @@ def _object(
         unit = 1.0 if kind.name.startswith(("exponent", "log")) else long
         if isinstance(kind, Unknown):
             unit = kind.unit(fit.given)
+        if kind.is_no_such(number):
+            allowed = f"inside {unit * kind.lowest:g} to {unit * kind.highest:g}"
+            remedy = f"it is no {family.name}, or the readings do not determine it"
+            best = f"{kind.name} of the best {family.name}"
+            raise NoFamilyError(best, f"{unit * number:g}", allowed, remedy)
         half = DOUBLE_SIDED_95 * deviation
         ends = number, number - half, number + half
         found[kind.name] = Estimate(*(float(unit * x) for x in ends))
@@ -267,7 +272,8 @@ def _band(
     angle = np.linspace(low, high, _BAND)
 
     def places(at: Floats) -> Floats:
-        return np.stack(family.profile(at).place(angle))
+        contour = family.profile(at)
+        return np.stack(contour.place(contour.parameter(angle)))
 
     here = places(numbers)
     steps = _STEP * np.eye(len(numbers))

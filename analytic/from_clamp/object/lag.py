@@ -5,6 +5,7 @@ in a sweep to the left a lag moves all that is found to the left, in one to the 
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ import pandas as pd
 
 from analytic.from_clamp.calibration.calibrate import Estimate
 from analytic.from_clamp.calibration.unknowns import LAG
+from analytic.from_clamp.fitted import NoFamilyError
 from analytic.from_clamp.noise import known_to, reading_noise
 from analytic.from_clamp.object.fit_object import families_fitted, late_if_both_ways
 from analytic.from_clamp.passes import as_passes
@@ -58,15 +60,15 @@ def lag_between(readings: Sequence[Readings]) -> Lag | None:
     means = [
         _mean_of([one for one in passes if one.runs_right == right]) for right in (False, True)
     ]
-    try:
+    found = None
+    with suppress(InputError):  # as of an object that one direction does not touch
         fit = families_fitted(means, _noise_of(means), ("flexural_rigidity", LAG))
         for family in _FAMILIES:
-            found = fit(family)
-            if found.explains:
-                break
-        else:
-            return None
-    except InputError:  # as of an object that one direction does not touch
+            with suppress(NoFamilyError):
+                found = fit(family)
+                if found.explains:
+                    break
+    if found is None or not found.explains:
         return None
     rigidity, size = found.found["flexural_rigidity"], passes[0].beam.base_rigidity
     shares = (x / size for x in (rigidity.value, rigidity.lowest, rigidity.highest))

@@ -21,7 +21,7 @@ _BEFORE = 1e-13  # L of the way: touching, but not within
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's tangent
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
 _SHORT = 1e-3, 1e-6  # of panels past an edge, if something happens soon
-_SEAM = 1e-6  # of panels: past it the body is curved otherwise, and no polynomial goes across
+_SEAM, _OTHERWISE = 1e-6, 1e-3  # of panels that end at a seam; 1/L, of curvatures past it
 _WHOLLY = 1.0  # of rates: rounding may have made them
 _SAFE = 0.8  # of a length that would just be short enough
 LAST = "slip-off", "release"
@@ -151,7 +151,7 @@ class Branch:
             return self._lasting(stretch, leg, states, sticks, reach)
         found = self._panel(leg, state, sticks, reach, done if event is None else None)
         if self._friction and event is None and (found is None or found.reach < _SEAM):
-            past = self._lasting(stretch, leg, self._past_edge(stretch), sticks, reach)
+            past = self._lasting(stretch, leg, _past_seam(stretch), sticks, reach)
             if past is not None and past.panel is not done:
                 return past
         if found and found.law.rubs and self._margins(found, 0)["stick"] < -_STILL:
@@ -250,6 +250,18 @@ class Branch:
         if len(ahead) > 1:
             margins["corner"] = float(ahead[0]) - state.travel
         return margins
+
+
+def _past_seam(stretch: Stretch) -> Iterator[Sliding]:
+    """The state where a smooth body is curved otherwise: no polynomial goes across."""
+    done, last = stretch.panel, stretch.last.contact
+    for ahead in (_AHEAD, _BESIDE):
+        vector = done.beyond(stretch.end + ahead / done.reach)
+        near = state_of(done.scene, vector, last.tangent)
+        if np.abs(near.contact.spot.turning - last.spot.turning).max() > _OTHERWISE:
+            found = done.law.settled(done.scene, near, done.by, float(done.by @ vector))
+            if found is not None:
+                yield found
 
 
 def _change(found: Panel) -> float:
