@@ -13,6 +13,7 @@ from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
 from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
+    damping_at,
     drive_of,
     friction_loss,
     holders,
@@ -84,19 +85,23 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     s = np.cumsum(lengths(nodes))
     length = float(s[-1])
-    bending = held.bending(axes)
+    bending, chain = held.bending(axes), parts.rod is None
+    slowest = float(np.sqrt(bending.squares[bending.first]))
+    period = 2 * np.pi / slowest
+    rate = _TURN / len(parts.chain) / (_SWEEP * period)
+    dampers = damping_at(model, held.dofs, rate)
+    if chain and (dampers != model.dof_damping[held.dofs]).any():
+        held.model.dof_damping[held.dofs] = dampers
+        bending = held.bending(axes)
     squares, damping = bending.squares, bending.damping
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
-    slowest = float(np.sqrt(squares[bending.first]))
-    period = 2 * np.pi / slowest
     longest = float(2 * np.pi / np.sqrt(squares[0]))
     if not 1 / _LONGEST < longest < _LONGEST:
         raise InputError(
             "model", f"with a first period of {longest:g}", "one with a mass that its springs move",
             "correct the masses of the vibrissa and of what holds it",
         )  # fmt: skip
-    chain = parts.rod is None
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = readings_of(welded or held, axes, tip_rigidity, length)
     probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
@@ -157,7 +162,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
             mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
-        friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
+        friction_loss=friction_loss(model, held.dofs, rate),
         **{
             name: _moved(held, model, field, axes[0] * unit)
             for name, field in zip(("limits", "stiffening"), BEYOND, strict=True)
