@@ -64,6 +64,8 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
     counts its way backwards: which of them lays the readings over the reference's decides.
     """
     record, order = inspect_record(candidate), partial(RowOrder, column=candidate.running)
+    if sorted_before := candidate.provenance.get("rows", {}).get("retreats", 0):
+        return candidate, replace(record, retreats=sorted_before), order(sorted=True)
     opposite = _sign(candidate, "moment_z") * _sign(reference, "moment_z") < 0
     if record.retreats:
         # A sweep the other way has the sign of force_y; a sensor that is turned has not.

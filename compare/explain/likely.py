@@ -130,8 +130,9 @@ def _doubted(found: Measurement) -> Iterator[str]:
 
 
 def _short(found: Measurement) -> list[str]:
-    """That the sweep does not cover all events of the reference."""
-    if not (beyond := found.beyond()):
+    """That the sweep does not cover all events and all contact of the reference."""
+    beyond = found.beyond() or ["contact"] * any(found.cut_off())
+    if not beyond:
         return []
     size, unit = found.reference.running_unit
     at, name = found.candidate.running_values / size, found.reference.running

@@ -55,6 +55,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
     unasked = {*found.unsure(), *found.not_reached()}
     seen = {name: pair for name, pair in events.items() if name not in unasked}
     yield from _events(found, seen, found.beyond(), found.not_trusted())
+    yield from _cut_off(found)
     counts, stations = found.alignment.counts, len(found.candidate.table)
     absent = _absent(found)
     untrusted = counts["untrusted"] + counts["dropped"] + absent
@@ -244,6 +245,18 @@ def _absent(found: Measurement) -> int:
     holes = found.records["candidate"].holes.items()
     within = (np.diff(np.searchsorted(at, np.sort(own[i : i + 2])))[0] for i, _ in holes)
     return sum(count for (_, count), some in zip(holes, within, strict=True) if some)
+
+
+def _cut_off(found: Measurement) -> Iterator[Failure]:
+    (size, unit), running = found.reference.running_unit, found.reference.running
+    for end, touching, rows in found.cut_off():
+        said = (
+            f"the candidate's stations end at {running} = {end / size:.4g} {unit}, and the "
+            f"reference touches as far as {touching / size:.4g} {unit}: some {rows} rows are not "
+            "there"
+        )
+        todo = "sweep both over one stretch, or the reference over that of the candidate"
+        yield Failure("stretch", said, todo)
 
 
 def _reasons(found: Measurement, absent: int) -> Iterator[str]:

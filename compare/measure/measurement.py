@@ -89,6 +89,24 @@ class Measurement(SweepPair[Readings]):
             if not (self._covers(has, at) or self._covers(lacks, at))
         ]
 
+    def cut_off(self) -> Iterator[tuple[float, float, int]]:
+        """Where the candidate's stations end amid the reference's contact.
+
+        The last place, how far the reference touches, and how many rows lie between.
+        """
+        phase, at = self.judged["reference"].phase, self.reference.running_values
+        touching = at[(phase != "free") & (phase != "")]
+        own = np.unique(self.candidate.running_values)
+        steps = np.diff(own if len(own) > 1 else np.unique(at))
+        if not touching.size or not steps.size:
+            return
+        step = float(np.median(steps))
+        for far, way in ((touching.min(), -1), (touching.max(), 1)):
+            end, last = own[::way][-1], own[::way][-2:]
+            beyond = way * (far - end)
+            if beyond > max(step, float(np.ptp(last))) + abs(self.offset.value):
+                yield float(end), float(far), round(beyond / step)
+
     def _covers(self, which: str, at: float) -> bool:
         along = getattr(self, which).running_values
         return bool(along.min() <= at <= along.max())

@@ -20,6 +20,7 @@ from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
 from compare.read.tables import read_beam
 from compare.read.units import DIMENSIONS, OWN_UNITS, check_unit, unit_in_si
+from compare.sense.record import retreats
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
@@ -217,7 +218,8 @@ def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:
         way: Direction = "right" if readings.bends_left else "left"
         return [(way, _in_order(readings, way))]
     # The row at a turn belongs to the sweep that ends there.
-    edges = [0, *(turn + 1 for turn in turns), len(foot_x)]
+    # Written one below the other, two sweeps have the stage's way back between two rows.
+    edges = [0, *(turn + 1 for turn in turns if turn - 1 not in turns), len(foot_x)]
     tables = [readings.table.iloc[begin:end] for begin, end in pairwise(edges)]
     parts = [replace(readings, table=one.reset_index(drop=True)) for one in tables]
     return [(_way(one), _in_order(one, _way(one))) for one in parts]
@@ -257,5 +259,6 @@ def _in_order(readings: Readings, way: Direction) -> Readings:
         table = table.groupby(station).agg(how)
     if not (back or repeated):
         return readings
-    provenance = {**readings.provenance, "rows": {"out_of_order": back, "averaged": int(repeated)}}
+    rows = {"out_of_order": back, "retreats": retreats(readings), "averaged": int(repeated)}
+    provenance = {**readings.provenance, "rows": rows}
     return replace(readings, table=table.reset_index(drop=True), provenance=provenance)

@@ -108,8 +108,8 @@ def _ringing(readings: Readings, phase: Words, explained: Booleans) -> Booleans:
     for begin in (np.flatnonzero(odd[peak + 1 :]) + peak + 1).tolist():
         first = max(begin - _LAST, 0)
         last = force[:, first + int(np.argmax(size[first:begin]))]
-        along = last @ force[:, begin:] / (last @ last)
-        if along.mean() <= _ASTRAY and (along < 0)[touching[begin:]].any():
+        along = last @ force[:, begin:]
+        if along.mean() <= _ASTRAY * (last @ last) and (along < 0)[touching[begin:]].any():
             found[begin:] = touching[begin:]
             break
     return found

@@ -121,7 +121,7 @@ def inspect_record(readings: Readings) -> Record:
         widest=float(steps.max()),
         holes=_holes(steps),
         column=readings.running,
-        retreats=_retreats(readings, median),
+        retreats=retreats(readings),
     )
 
 
@@ -197,9 +197,10 @@ def _holes(steps: Floats) -> dict[int, int]:
     return {int(i): round(float(steps[i] / beside[i])) - 1 for i in wide}
 
 
-def _retreats(readings: Readings, median: float) -> int:
+def retreats(readings: Readings) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
     x = direction(readings) * readings.running_values
+    median = float(np.median(np.abs(np.diff(x))))
     back = float(np.max(np.maximum.accumulate(x) - x))
     least, most = (fraction * float(np.ptp(x)) for fraction in _BACK)
     if back <= min(max(_JITTER * median, least), most):

@@ -1,6 +1,7 @@
 """What a user should know of a model that was measured: faults, and notes."""
 
 from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 
@@ -38,10 +39,15 @@ _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the othe
 _LEVER = 5e-3  # L; of the force's moment
 _LATE = 5e-3  # L; of the foot, as 0.1 T1 at 0.05 L/T1
 _SAG = 2e-3  # L; as a contact that is so far off
-_BENDS = 5.0  # rad; what all joints together turn by in a usual sweep, at most
+_WAYS: tuple[tuple[Literal["fault", "note"], str], ...] = (
+    ("fault", "as a sweep bends it"),
+    ("note", "as a sweep to the right would bend it"),
+)
 _RUBS = 2e-3  # EI/L; 3e-3 moves readings by 0.7 per cent: joints turn faster than in the mean, too
 _ELASTICA = 0.02  # L; a sound chain of ten links is off by 4e-3 at P L^2/EI = 10
-_NONLINEAR = 5e-3  # L; where springs stiffen by 10 per cent it is 1.5e-2, and readings are 4 off
+# L; where springs stiffen by 10 per cent it is 1.5e-2, and readings are 4 off; where limits hold
+# joints, 1.2e-2 and 2.7, 6e-3 and 1.4, 1e-3 and 0.2.
+_NONLINEAR = 5e-3
 _METRES = 3.0  # a longer vibrissa is rather one in millimetres
 _READS = 0.01  # of a load, by the sensor that should read all of it
 # What MuJoCo's solver leaves undone (`MeasuredBeam.undone`): 400 cost a whip of 14 links nothing,
@@ -105,19 +111,10 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
                      f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
-    most = _ELASTICA if found.linear else _NONLINEAR
-    if abs(off) <= RIGIDITY and error > most and not found.limits:
-        straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
+    if abs(off) <= RIGIDITY and error > _ELASTICA:
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
-                     "cantilever",
-                     "take more links" if found.linear else "its springs stiffen as they turn",
-                     () if found.linear else treatment.stiffened(found, straight))  # fmt: skip
-    least = RIGIDITY * FORCE * as_intended(found) / found.length  # of a moment that matters
-    past = _BENDS * max(j.cell for j in found.joints) / found.length - min(found.limits, default=9)
-    if past * found.limit_stiffness > least:
-        yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
-                     "degrees, less than a sweep bends it",
-                     edits=(*treatment.joints(found, limited="false"),))  # fmt: skip
+                     "cantilever", "take more links")  # fmt: skip
+    yield from _beyond_springs(found)
     stretch = found.stretch * FORCE * as_intended(found) / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
@@ -130,6 +127,23 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
                      "in each: the vibrissa stays bent",
                      edits=(*treatment.joints(found, frictionloss="0"),))  # fmt: skip
+
+
+def _beyond_springs(found: MeasuredBeam) -> Iterator[Remark]:
+    """What a joint has beyond a linear spring."""
+    linear = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
+    for subject, ways, what, remedy, edits in (
+        ("limits", found.limits, "those of its joints move",
+         "" if found.springs != "flex" else "take their default's range away",
+         treatment.joints(found, limited="false")),
+        ("large bending", found.stiffening, "its springs are not linear, which moves", "",
+         treatment.stiffened(found, linear)),
+    ):  # fmt: skip
+        for moved, (kind, bends) in zip(ways, _WAYS, strict=True):
+            if moved > _NONLINEAR * found.length:
+                far = f"by up to {moved / found.length:.1e} L" if moved < np.inf else "without end"
+                yield Remark(kind, subject, f"{what} the tip {far} {bends}", remedy, edits)
+                break
 
 
 def _cause(found: MeasuredBeam, first: float) -> str:

@@ -168,7 +168,7 @@ class MovingModel(SteppedModel):
         return Contacts.of(self.data, self._surface, self._layout, joints)
 
     def clamp(self) -> Clamp:
-        return by_sensors(self.data, float(self._pose.angle))
+        return Clamp.of(by_sensors(self.data))
 
     @property
     def touches(self) -> bool:

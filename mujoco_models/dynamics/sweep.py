@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from analytic.numerics.arrays import Floats
 from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from analytic.problem.recorder import DIVERGED, AnyRecorder, Kept, Recorder
@@ -53,10 +55,19 @@ def run_there_and_back(
 
 def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes", StationMeans]:
     """The model at its start, with the case's friction, and what takes its readings."""
+    motion, record = on_way(case.way, motion, case.friction)
+    model = _set_out(case, motion, settings, start_of(record, motion))
+    source, about = f"mujoco {settings.beam} in motion", {"settings": asdict(settings)}
+    return Passes(model, case, motion, source, about), record
+
+
+def on_way(
+    way: Floats, motion: Motion, friction: float, names: tuple[str, ...] = CLAMP_READINGS
+) -> tuple[Motion, StationMeans]:
+    """The motion with a case's friction if it states none, and what takes the readings on a way."""
     if motion.friction is None:
-        motion = replace(motion, friction=case.friction)
-    record = StationMeans(case.way, motion.average)
-    steps = float(np.ptp(case.way)) / motion.speed / motion.timestep
+        motion = replace(motion, friction=friction)
+    steps = float(np.ptp(way)) / motion.speed / motion.timestep
     if steps > _MOST_STEPS:
         raise InputError(
             "motion.speed",
@@ -64,9 +75,7 @@ def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes",
             f"fast enough for a sweep of {_MOST_STEPS:.0e} steps, not {steps:.1e}",
             "0.004 L/T1 is a slow whisk; a sweep at rest has no speed",
         )
-    model = _set_out(case, motion, settings, start_of(record, motion))
-    source, about = f"mujoco {settings.beam} in motion", {"settings": asdict(settings)}
-    return Passes(model, case, motion, source, about), record
+    return motion, StationMeans(way, motion.average, names)
 
 
 def start_of(record: StationMeans, motion: Motion) -> float:

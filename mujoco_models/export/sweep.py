@@ -62,7 +62,7 @@ class _Written(SteppedModel):
         return bool(self.data.ncon and self.data.contact.dist.min() < 0)
 
     def clamp(self) -> Clamp:
-        fx, fy, mz = by_sensors(self.data, 0.0)
+        fx, fy, mz = Clamp.of(by_sensors(self.data))
         force, moment = self._beam.force_unit, self._beam.moment_unit
         return Clamp(fx / force, fy / force, mz / moment)
 

@@ -1,4 +1,4 @@
-"""What holds a user's vibrissa beside its springs: constraints, tendons, limits and friction."""
+"""What holds a user's vibrissa beside its springs: constraints and tendons."""
 
 import mujoco
 import numpy as np
@@ -6,8 +6,6 @@ import numpy as np
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import bodies_of_constraint
 from mujoco_models.inspect.parts import Parts
-
-_PAST = 0.05  # rad; by which a joint is past its limit in a sweep
 
 
 def check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
@@ -25,7 +23,7 @@ def check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
 def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
     """Raise InputError where a tendon holds the vibrissa beside its springs.
 
-    But for a spring on joints, which is one of theirs.
+    But for a linear spring on joints, which is one of theirs.
     """
     driven = model.actuator_trnid[model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON, 0]
     coupled = (model.eq_type == mujoco.mjtEq.mjEQ_TENDON) & model.eq_active0
@@ -38,7 +36,9 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
             model.jnt_bodyid[numbers] if on_joints
             else model.site_bodyid[numbers[kinds == mujoco.mjtWrap.mjWRAP_SITE]]
         )  # fmt: skip
-        springy = model.tendon_stiffness[tendon] != 0 and not on_joints
+        more = getattr(model, "tendon_stiffnesspoly", np.zeros((model.ntendon, 1)))[tendon].any()
+        linear = on_joints and np.ptp(model.tendon_lengthspring[tendon]) == 0 and not more
+        springy = model.tendon_stiffness[tendon] != 0 and not linear
         holds = springy or model.tendon_limited[tendon] or model.tendon_frictionloss[tendon] > 0
         mine = set(model.body_weldid[bodies].tolist()).intersection(parts.chain)
         if mine and (holds or tendon in driven or tendon in ends):
@@ -48,17 +48,3 @@ def check_tendons(model: mujoco.MjModel, parts: Parts) -> None:
                 f"take tendon {model.tendon(tendon).name!r} away, or its stiffness, limits and "
                 "actuator",
             )  # fmt: skip
-
-
-def limit_stiffness(model: mujoco.MjModel, parts: Parts) -> float:
-    """Of the limits of its hinges, as soft as solreflimit makes them: the median of them."""
-    mine = np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1)
-    hinges = np.flatnonzero(mine & (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE))
-    if not hinges.size:
-        return 0.0
-    data = mujoco.MjData(model)
-    data.qpos[model.jnt_qposadr[hinges]] = model.jnt_range[hinges, 1] + _PAST
-    mujoco.mj_forward(model, data)
-    ends = data.efc_type == mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT
-    ends &= np.isin(data.efc_id, hinges)
-    return float(np.median((data.efc_D * data.efc_aref)[ends])) / _PAST if ends.any() else 0.0

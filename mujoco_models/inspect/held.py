@@ -17,6 +17,8 @@ _OFF = mujoco.mjtDisableBit
 _STATED = int(
     _OFF.mjDSBL_CONSTRAINT | _OFF.mjDSBL_EQUALITY | _OFF.mjDSBL_SPRING | _OFF.mjDSBL_SENSOR
 )
+BEYOND = "jnt_limited", "jnt_stiffnesspoly"
+"""What a joint has beyond a linear spring; the latter since MuJoCo 4."""
 _HEAVY = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 
 
@@ -44,7 +46,8 @@ class Bending:
 class HeldModel:
     """A model whose foot is held, without contacts and gravity, and loads on the tip.
 
-    Springs, constraints and sensors that a flag switches off are on: the flag is a fault itself.
+    Its springs are linear and have no ends. Springs, constraints and sensors that a flag switches
+    off are on: the flag is a fault itself.
     """
 
     small: float  # EI/L^2 and EI/L; the loads by which sensors are probed
@@ -58,6 +61,8 @@ class HeldModel:
         self.model.opt.gravity[:] = 0
         self.model.opt.disableflags &= ~_STATED
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+        for field in set(BEYOND).intersection(dir(model)):
+            getattr(self.model, field)[np.isin(model.jnt_bodyid, parts.chain)] = 0
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0

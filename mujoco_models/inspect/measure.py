@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
-from mujoco_models.inspect.beside import check_constraints, check_tendons, limit_stiffness
+from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
     drive_of,
     friction_loss,
@@ -23,7 +23,7 @@ from mujoco_models.inspect.drive import (
     slides,
 )
 from mujoco_models.inspect.hand import measure_hand, on_weld
-from mujoco_models.inspect.held import lengths
+from mujoco_models.inspect.held import BEYOND, lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
@@ -43,6 +43,7 @@ from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_MOST_LOADS = (0.0, *_LOADS, 20.0)  # as the catenary bends it, 6.2/L at the clamp
 _TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _WAY = 2.0  # L; of the foot in it
 _PRESSES = 3.0  # EI/L^2; the largest force of it
@@ -135,7 +136,6 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         undone=_undone(model) * period**4 / (mass * length**2),
         conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
-        linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
         sag=sag,
@@ -158,8 +158,10 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
         friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
-        limits=_limits(model, parts),
-        limit_stiffness=limit_stiffness(model, parts),
+        **{
+            name: _moved(held, model, field, axes[0] * unit)
+            for name, field in zip(("limits", "stiffening"), BEYOND, strict=True)
+        },
     )
 
 
@@ -230,11 +232,6 @@ def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float
 
 def _aside(points: Floats, direction: Floats) -> Floats:
     return np.asarray(points - np.outer(points @ direction, direction))
-
-
-def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
-    terms = getattr(model, "jnt_stiffnesspoly", np.zeros((model.njnt, 1)))
-    return not terms[np.isin(model.jnt_bodyid, parts.chain)].any()
 
 
 def _joints(
@@ -308,11 +305,31 @@ def _springs(parts: Parts) -> Literal["joints", "plugin", "flex"]:
     return "plugin" if parts.plugin else "joints"
 
 
-def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
-    joints = np.flatnonzero(np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1))
-    if not joints.size:
-        return ()
-    return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+def _moved(held: Held, model: mujoco.MjModel, field: str, force: Floats) -> tuple[float, float]:
+    """How far what is beyond linear springs moves the tip, bent by a force, and the other way."""
+    own, joints = getattr(model, field, None), np.isin(model.jnt_bodyid, held.parts.chain)
+    if own is None or not own[joints].any():
+        return 0.0, 0.0
+    stated = hold(model, held.parts)
+    getattr(stated.model, field)[:] = own
+    found = []
+    for sense in (1, -1):
+        found.append(max(_apart(held, stated, load_ * sense * force) for load_ in _MOST_LOADS))
+        held.unload()
+        stated.set_back()
+    return found[0], found[1]
+
+
+def _apart(held: Held, stated: Held, force: Floats) -> float:
+    """How far the tips of two are from each other; infinite if the second comes to no rest."""
+    for one in (held, stated):
+        one.load(force, np.zeros(3))
+    held.rest()
+    try:
+        stated.rest()
+    except InputError:
+        return math.inf
+    return float(np.linalg.norm(held.tip - stated.tip))
 
 
 def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:

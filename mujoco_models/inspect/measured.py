@@ -150,8 +150,6 @@ class MeasuredBeam(Shown):
         Whether that solver is CG, which stops shorter than Newton.
     damping_ratio : float
         Of the first vibration.
-    linear : bool
-        Whether its springs are: MuJoCo 4 has polynomials of the turn, too.
     medium : tuple of float
         Density, viscosity and the strength of the wind of what it moves in.
     gravity : tuple of float
@@ -181,10 +179,9 @@ class MeasuredBeam(Shown):
         Of friction.
     friction_loss : float
         The largest moment by which friction holds a joint as fast as it turns in a sweep.
-    limits : tuple of float
-        The smallest turn at which a joint of the vibrissa is limited [rad]; empty without any.
-    limit_stiffness : float
-        Moment over turn past such a limit.
+    limits, stiffening : tuple of float
+        How far limits of its joints, and springs that are not linear, move the tip where it is bent
+        as by the sweep, and bent the other way [length].
     """
 
     model: str
@@ -214,7 +211,6 @@ class MeasuredBeam(Shown):
     undone: float
     conjugate: bool
     damping_ratio: float
-    linear: bool
     medium: tuple[float, float, float]
     gravity: tuple[float, float, float]
     sag: float
@@ -231,8 +227,8 @@ class MeasuredBeam(Shown):
     integrator: IntegratorKind
     cone: ConeKind
     friction_loss: float
-    limits: tuple[float, ...]
-    limit_stiffness: float
+    limits: tuple[float, float]
+    stiffening: tuple[float, float]
 
     @property
     def natural_curvature(self) -> float:

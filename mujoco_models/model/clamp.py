@@ -7,7 +7,6 @@ import numpy as np
 
 from analytic.numerics.arrays import Booleans, Floats
 from analytic.numerics.vectors import cross
-from mujoco_models.beams.layout import turned
 
 
 class Clamp(NamedTuple):
@@ -28,15 +27,13 @@ WEIGHTLESS = Clamp(0.0, 0.0, 0.0)
 """What holds no weight."""
 
 
-def by_sensors(data: mujoco.MjData, angle: float) -> Clamp:
-    """MuJoCo's force and torque sensors at a clamp that leans to the left by an angle.
+def by_sensors(data: mujoco.MjData) -> Floats:
+    """Force and moment at the foot by MuJoCo's sensors, in the world frame, shape (2, 3).
 
-    Their site sits at the foot and leans with it: what it transmits to the beam is what the clamp
-    does to the vibrissa.
+    Their site, the only one, sits at the foot and leans with it: what it transmits to the beam is
+    what the clamp does to the vibrissa.
     """
-    fx, fy, _, _, _, mz = data.sensordata
-    fx, fy = turned(np.array([fx, fy]), angle)
-    return Clamp(float(fx), float(fy), float(mz))
+    return np.asarray(data.sensordata.reshape(2, 3) @ data.site_xmat[0].reshape(3, 3).T)
 
 
 def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Floats:

@@ -219,7 +219,7 @@ class BeamModel(Balance):
 
     def clamp(self) -> clamp.Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors."""
-        return clamp.by_sensors(self.data, float(self.pose.angle))
+        return clamp.Clamp.of(clamp.by_sensors(self.data))
 
     def discrepancy(self) -> float:
         """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""
@@ -231,8 +231,8 @@ class BeamModel(Balance):
         required += holding(model, data, foot, model.body_rootid == self._foot)
         moment = float(self.elastic_moments()[0])
         joint = turned(self.layout.base[0], self.pose.angle)
-        accounts = (clamp.Clamp.of(wrench) for wrench in (required, base))
-        return clamp.discrepancy(self.clamp(), next(accounts), joint, moment, next(accounts))
+        account, own = clamp.Clamp.of(required), clamp.Clamp.of(base)
+        return clamp.discrepancy(self.clamp(), account, joint, moment, own)
 
     def hang(self) -> Floats:
         """Joint angles of the vibrissa under its weight, in the pose that the clamp has."""

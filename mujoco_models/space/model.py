@@ -12,7 +12,7 @@ from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.errors import DivergedError
-from mujoco_models.model.clamp import by_contacts
+from mujoco_models.model.clamp import by_contacts, by_sensors
 from mujoco_models.model.stiffness import stiffen
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.space.assembly import assembled
@@ -27,14 +27,6 @@ class Touch(NamedTuple):
     centre: Floats  # of the bead, shape (3,)
     normal: Floats  # the body's, outward, shape (3,)
     distance: float  # between the two surfaces; negative if they overlap
-
-
-class Clamped(NamedTuple):
-    """The clamp's action on the vibrissa at the foot, in the world's frame."""
-
-    force: Floats  # shape (3,) [EI/L^2]
-    moment: Floats  # shape (3,) [EI/L]
-    discrepancy: float  # by how much that differs from what holds the contacts' forces
 
 
 class SpaceModel:
@@ -65,7 +57,6 @@ class SpaceModel:
         self._foot, self._body = model.body(FOOT).id, model.geom(GEOM).id
         follows = shape.osculating is not None
         self._outline = model.geom(OUTLINE).id if follows else self._body
-        self._site = model.site("clamp").id
         numbers = range(len(self.ends))
         self._links = np.array([model.body(link_name(i)).id for i in numbers])
         self._beads = np.array([model.geom(f"bead{i}").id for i in numbers])
@@ -240,11 +231,11 @@ class SpaceModel:
             raise DivergedError("MuJoCo's moments at the joints are not finite")
         return float(np.abs(found).max())
 
-    def clamp(self) -> Clamped:
-        """MuJoCo's sensors at the clamp, of what `rest` evaluated."""
-        turn = self.data.site_xmat[self._site].reshape(3, 3)
-        force, moment = (turn @ part for part in self.data.sensordata.reshape(2, 3))
-        sensed = np.stack([force, moment])
+    def clamp(self) -> Floats:
+        """The clamp's force and moment by MuJoCo's sensors, shape (2, 3), of what `rest` has."""
+        return by_sensors(self.data)
+
+    def discrepancy(self) -> float:
+        """By how much they differ from what holds the contacts' forces."""
         required = by_contacts(self.data, self.data.xpos[self._foot], self._moves)
-        miss = np.abs(sensed - required).max()
-        return Clamped(force, moment, float(miss))
+        return float(np.abs(self.clamp() - required).max())

@@ -5,7 +5,7 @@ cone holds friction back alike in all directions; a pyramid does not.
 """
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 import mujoco
@@ -29,8 +29,8 @@ from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.dynamics.model import give_mass, set_options
 from mujoco_models.dynamics.moving import CARRIAGE, MASS, SteppedModel
-from mujoco_models.dynamics.record import StationMeans
-from mujoco_models.dynamics.sweep import Drive, start_of
+from mujoco_models.dynamics.sweep import Drive, on_way, start_of
+from mujoco_models.model.clamp import by_sensors
 from mujoco_models.model.parts import require_radius
 from mujoco_models.model.spec import compiled
 from mujoco_models.model.stations import engine
@@ -69,7 +69,6 @@ class MovingSpace(SteppedModel):
         self._sides = np.array([model.geom(f"side{i}").id for i in range(len(joints))])
         self._is_object = np.arange(model.ngeom) == model.geom(GEOM).id
         self._start = before
-        self._foot, self._site = model.body(FOOT).id, model.site("clamp").id
         self._set_contacts(motion, self._sides)
         mujoco.mj_forward(model, self.data)
 
@@ -85,8 +84,7 @@ class MovingSpace(SteppedModel):
 
     def clamp(self) -> tuple[float, ...]:
         """Force and moment, by MuJoCo's sensors, in the world's frame."""
-        turn = self.data.site_xmat[self._site].reshape(3, 3)
-        return tuple((self.data.sensordata.reshape(2, 3) @ turn.T).ravel().tolist())
+        return tuple(by_sensors(self.data).ravel().tolist())
 
     @property
     def touches(self) -> bool:
@@ -140,9 +138,9 @@ def run_space_motion(
 ) -> SpatialReadings:
     """Sweep the chain in space in motion; see `mujoco_models.simulate_motion`."""
     require_radius(case.beam.radius)
-    motion = replace(motion, friction=case.friction if motion.friction is None else motion.friction)
+    way = -case.path.travel / case.beam.length
+    motion, record = on_way(way, motion, case.friction, (*FORCE, *MOMENT))
     _check(case, motion, settings)
-    record = StationMeans(-case.path.travel / case.beam.length, motion.average, (*FORCE, *MOMENT))
     model = MovingSpace(case, build_spatial(settings), settings, motion, start_of(record, motion))
     about = {
         "engine": engine(),

@@ -91,10 +91,8 @@ def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[s
         row["stability"], _ = rest.softest(found, foot)
         row["residual"] = _rest(model, found)
         row |= _contact(model, found)
-    clamped = model.clamp()
-    row |= dict(zip(FORCE, clamped.force, strict=True))
-    row |= dict(zip(MOMENT, clamped.moment, strict=True))
-    row["discrepancy"] = clamped.discrepancy
+    row |= dict(zip((*FORCE, *MOMENT), model.clamp().ravel(), strict=True))
+    row["discrepancy"] = model.discrepancy()
     force = 0.0 if found is None else found.state.force
     unavoidable = 2 * model.shape.blur * force
     if found is not None:

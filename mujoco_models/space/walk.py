@@ -256,8 +256,6 @@ class Walk:
         else:
             if hopped or _apart(landed, held) > _STEADY:  # or the same branch, where that is steep
                 self.events.append(WalkEvent("hop", self._at))
-            if hopped:
-                self._note_phase(held, goal, landed)
             self._held = landed
         self._at = goal
 

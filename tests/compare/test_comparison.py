@@ -109,6 +109,18 @@ def test_rows_that_are_not_there_amid_contact_are_no_agreement(rows, agrees):
     assert agrees or "15 rows are not there" in found.likely
 
 
+@pytest.mark.parametrize("kept", [slice(95), slice(12), slice(45, None)])
+def test_a_sweep_that_is_cut_off_in_contact_is_no_agreement(kept):
+    """Not even where no event lies beyond the cut: of the first rows alone little shows."""
+    exact = solve_sweep(Case(profile=circle(0.8, (0.0, 0.4)), sweep=Sweep(100, stop=-0.6)))
+    table = exact.table[kept].reset_index(drop=True)
+    found = compare(exact, Readings(table[["foot_x", *CLAMP_READINGS]]))
+    assert not found.agrees and "stretch" in [one.name for one in found.exceeded]
+    assert found.likely.startswith("too short a sweep")
+    coarse = exact.table[::9].reset_index(drop=True)
+    assert compare(exact, Readings(coarse[["foot_x", *CLAMP_READINGS]])).agrees
+
+
 @pytest.mark.parametrize("ahead", [1.5, 2.0])
 def test_a_station_that_is_ahead_past_a_smooth_contour_is_not_excused(ahead):
     """As one on another branch, whose readings and contact belong together."""

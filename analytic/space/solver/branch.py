@@ -21,6 +21,8 @@ _BEFORE = 1e-13  # L of the way: touching, but not within
 _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's tangent
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
 _SHORT = 1e-3, 1e-6  # of panels past an edge, if something happens soon
+_SEAM, _OTHERWISE = 1e-6, 1e-3  # of panels that end at a seam; 1/L, of curvatures past it
+_WHOLLY = 1.0  # of rates: rounding may have made them
 _SAFE = 0.8  # of a length that would just be short enough
 LAST = "slip-off", "release"
 NOTED = "phase", "stick", "slide"
@@ -144,13 +146,20 @@ class Branch:
         elif event == "corner":
             leg = self._leg(state.travel)
         reach = min(done.reach * min(_change(done), _LONGER), _LONGEST)
-        if event is not None and not (self._friction and self._scene.body.smooth):
+        if event == "phase" or (event and not (self._friction and self._scene.body.smooth)):
             states = self._past_edge(stretch) if event == "edge" else [state]
             return self._lasting(stretch, leg, states, sticks, reach)
         found = self._panel(leg, state, sticks, reach, done if event is None else None)
+        if self._friction and event is None and (found is None or found.reach < _SEAM):
+            past = self._lasting(stretch, leg, _past_seam(stretch), sticks, reach)
+            if past is not None and past.panel is not done:
+                return past
         if found and found.law.rubs and self._margins(found, 0)["stick"] < -_STILL:
             found = self._panel(leg, state, True, reach, None)  # the foot has turned
-        return None if found is None else self._stretch(found)
+        following = found and self._stretch(found)
+        if following and max(stretch.end, following.end) <= _CLOSE:
+            return None  # it neither sticks nor slides: what it does depends on its motion
+        return following
 
     def _past_edge(self, stretch: Stretch) -> Iterator[Sliding]:
         """The state on the next face or edge, and past a seam of faces that are nearly one."""
@@ -194,7 +203,7 @@ class Branch:
         while reach > _SHORTEST:
             found = panel(scene, law, state, reach, before)
             if found is not None and found.coarse <= allowed:
-                return found
+                return found if found.rounded < _WHOLLY else None
             reach *= _SHORTER if found is None else max(_change(found), _SHORTER)
         return None
 
@@ -221,6 +230,7 @@ class Branch:
     def _margin(self, found: Panel, share: float, state: Sliding) -> dict[str, float]:
         """What is positive up to an event."""
         velocity, speed = found.velocity(share, state)
+        speed += found.rounded  # no reversal of the foot that rounding alone may have made
         contact, size = state.contact, float(np.sqrt(state.rub @ state.rub))
         if not self._friction:
             speed = margin(second_variation(contact, self._scene.radius))
@@ -240,6 +250,18 @@ class Branch:
         if len(ahead) > 1:
             margins["corner"] = float(ahead[0]) - state.travel
         return margins
+
+
+def _past_seam(stretch: Stretch) -> Iterator[Sliding]:
+    """The state where a smooth body is curved otherwise: no polynomial goes across."""
+    done, last = stretch.panel, stretch.last.contact
+    for ahead in (_AHEAD, _BESIDE):
+        vector = done.beyond(stretch.end + ahead / done.reach)
+        near = state_of(done.scene, vector, last.tangent)
+        if np.abs(near.contact.spot.turning - last.spot.turning).max() > _OTHERWISE:
+            found = done.law.settled(done.scene, near, done.by, float(done.by @ vector))
+            if found is not None:
+                yield found
 
 
 def _change(found: Panel) -> float:

@@ -40,6 +40,7 @@ _WILD = 1.0  # L and rad, of any of them
 # Of its last step; where the force is so small that rounding leaves more, what that leaves.
 _EXACT, _ROUNDING = 1e-12, 1e-7
 _LEFT = 1e-10  # L, rad and of friction over the normal force: of the polynomials' last terms
+_OF_ROUNDING = 4.0  # times what it leaves of a state: it may be in the last terms of eight
 _GUESSED = 1e-5  # the same without friction, where a state needs no other one
 _NEARLY = 1e-9  # of such a state's equations
 _UP_TO_RELEASE = 0.999  # of the way to where a tip, that a body can only push, is straight
@@ -150,11 +151,18 @@ class Panel(NamedTuple):
     states: list[Sliding]  # at `POINTS`
     series: Floats  # of their vectors, by Legendre's polynomials
     rates: Floats  # of what moves, likewise
+    rounding: float  # L, rad and of friction over the normal force: what it leaves of a state
 
     @property
     def coarse(self) -> float:
         """How much its polynomials leave, over what they may."""
-        return float(np.abs(self.series[-1]).max()) / (_LEFT if self.law.friction else _GUESSED)
+        left = float(np.abs(self.series[-1]).max()) - _OF_ROUNDING * self.rounding
+        return max(left, 0.0) / (_LEFT if self.law.friction else _GUESSED)
+
+    @property
+    def rounded(self) -> float:
+        """How wrong the rates are at most by rounding: the last polynomial's at the ends."""
+        return _POINTS**2 * _OF_ROUNDING * self.rounding / self.reach
 
     def share_at(self, travel: float, last: float) -> float:
         """Where the foot has come so far; it goes on until the last share, at least."""
@@ -205,21 +213,22 @@ def panel(
         vectors = np.array([before.beyond(1 + reach / before.reach * x) for x in POINTS[1:]])
     near = [state_of(scene, vector, start.contact.tangent) for vector in vectors]
     if law.friction:
-        states = _collocated(scene, law, start, near, reach, by, amounts)
+        settled = _collocated(scene, law, start, near, reach, by, amounts)
     else:
-        states = _each_settled(scene, law, near, by, amounts)
-    if states is None:
+        settled = _each_settled(scene, law, near, by, amounts)
+    if settled is None:
         return None
+    states, rounding = settled
     found = [start, *states]
     series = _SERIES @ np.array([state.vector for state in found])
     rates = np.asarray(2 * legendre.legder(_SERIES @ _moving(found)) / reach, dtype=float)
-    return Panel(scene, law, by, reach, found, series, rates)
+    return Panel(scene, law, by, reach, found, series, rates, rounding)
 
 
 def _each_settled(
     scene: Scene, law: Law, near: list[Sliding], by: Floats, amounts: Floats
-) -> list[Sliding] | None:
-    """States without friction, from the last one on, which fails first."""
+) -> tuple[list[Sliding], float] | None:
+    """States without friction, from the last one on, which fails first; no rounding counts."""
     found = []
     for state, amount in zip(near[::-1], amounts[::-1], strict=True):
         # The less it is bent the less it takes to turn the plane in which it is.
@@ -228,7 +237,7 @@ def _each_settled(
         if settled is None:
             return None
         found.append(settled)
-    return found[::-1]
+    return found[::-1], 0.0
 
 
 def _collocated(
@@ -239,8 +248,8 @@ def _collocated(
     reach: float,
     by: Floats,
     amounts: Floats,
-) -> list[Sliding] | None:
-    """States with friction, all at once."""
+) -> tuple[list[Sliding], float] | None:
+    """States with friction, all at once, and what rounding leaves of them."""
     size = np.inf
     for _ in range(_STEPS):
         matrix, missed = _system(law, start, states, reach, by, amounts)
@@ -258,8 +267,10 @@ def _collocated(
             state_of(scene, one.vector + changed(one, step), start.contact.tangent)
             for one, step in both
         ]
-        if size <= _EXACT or (size <= _ROUNDING and size > last / 4):
-            return states
+        if size <= _EXACT:
+            return states, 0.0
+        if last / 4 < size <= _ROUNDING:
+            return states, size
     return None
 
 

@@ -15,6 +15,7 @@ from analytic.space.solver.hop import DependsOnMotion, landing
 _CLOSE = 1e-12  # L of the way: a vibrissa that has just come clear does not touch
 _BEYOND = 1e-8  # L, of the foot, where it lands: where it slips off is known to 2e-9 L
 _BESIDE = 1e-6  # L, of the foot: whether it goes away from the body
+_FAINT = 1e-3  # EI/L^2; where rounding leaves no direction of so little friction, it is released
 
 
 class Walked(NamedTuple):
@@ -50,7 +51,7 @@ class Walk:
                     at, contact = touch, self._branch.begin(touch)
                     self._note("touch", touch)
                     if contact is None:
-                        touch, unknown_until = self._clear_of(at)
+                        touch, unknown_until = self._clear_of(at + 10 * _CLOSE)
                         status = "slipped off"
                         if self._rubs:  # it is dragged along to where it would be clear, too
                             unknown_until, status = np.inf if touch is None else touch, "sticks"
@@ -71,6 +72,9 @@ class Walk:
                 touch, unknown_until = self._clear_of(at)
                 if status == "ok":
                     unknown_until = at
+                elif status == "diverged" and contact.stretch.event != "release":
+                    # It may hold on long after the straight one is clear.
+                    touch, unknown_until = None, np.inf
                 elif elsewhere:
                     unknown_until = np.inf if touch is None else touch
                 contact = None
@@ -85,10 +89,12 @@ class Walk:
         while stretch.last.travel < to:
             following = self._branch.after(stretch)
             if following is None:
-                at = stretch.last.travel
+                at, last = stretch.last.travel, stretch.last
+                if stretch.event not in LAST and last.contact.force < _FAINT and self._leaves(at):
+                    stretch = stretch._replace(event="release")
                 if stretch.event == "release":
                     at = max(at, self._way.next_clear(at) or at)
-                return at, held._replace(state=stretch.last, stretch=stretch), False
+                return at, held._replace(state=last, stretch=stretch), False
             if stretch.event in NOTED and (self._rubs or following.panel is not stretch.panel):
                 self._note(stretch.event, stretch.last.travel)
             stretch = following
@@ -113,11 +119,14 @@ class Walk:
         """Note how a contact ends; the status of stations up to where the vibrissa is clear."""
         if contact.stretch.event not in LAST:
             return "diverged"
+        lost = contact.stretch.event == "release" and contact.force >= LOOSE
         # One that has only begun is as loose, but the straight vibrissa is on its way in.
-        leaves = self._way.gap(travel + _BESIDE).size > self._way.gap(travel).size
-        released = contact.force < LOOSE and leaves
+        released = lost or (contact.force < LOOSE and self._leaves(travel))
         self._note("release" if released else "slip-off", travel)
-        return "ok" if released else "slipped off"
+        return "diverged" if lost else "ok" if released else "slipped off"
+
+    def _leaves(self, travel: float) -> bool:
+        return bool(self._way.gap(travel + _BESIDE).size > self._way.gap(travel).size)
 
     def _clear_of(self, travel: float) -> tuple[float | None, float]:
         """Where the straight vibrissa touches next, and from where on it is clear."""

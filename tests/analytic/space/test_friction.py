@@ -8,13 +8,14 @@ import pandas as pd
 import pytest
 from scipy.optimize import root
 
-from analytic import Beam, Case, InputError, Sweep, catenary, polygon, solve_sweep
+from analytic import Beam, Case, InputError, Sweep, catenary, circle, polygon, solve_sweep
 from analytic.numerics.arrays import Floats
 from analytic.space import (
     Body,
     FootPath,
     SpatialCase,
     SpatialReadings,
+    cylinder,
     ellipsoid,
     polyhedron,
     prism,
@@ -284,7 +285,7 @@ def test_past_an_edge_it_is_at_rest_before_it_goes_on() -> None:
 
 
 def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
-    """And slides along it; where its tip comes there it neither slides nor sticks, and hops."""
+    """And slides along it; where its tip comes there it neither slides nor sticks: it slips off."""
     cube = polyhedron([(x, y, z) for x in (-0.6, 0.6) for y in (0.6, 2) for z in (-1, 1)])
     path = FootPath([[1.2, 0.3], [-0.9, 0.2]], stations=40)
     case = SpatialCase(Beam(radius=2e-3), body=cube, path=path, friction=0.3)
@@ -295,6 +296,33 @@ def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
     np.testing.assert_allclose(place[:, :2], 0.6, atol=1e-11)
     assert np.ptp(place[:, 2]) > 0.01
     assert np.nanmax(rod_residuals(readings)) < 1e-10
+
+
+def test_where_a_flat_side_becomes_round_it_goes_on() -> None:
+    """No polynomial goes across; it neither slid nor stuck there, and what held on was "free"."""
+    path = FootPath([[1.3, 0.12], [-0.4, -0.03]], tangent=(-0.13, 1.0, 0.01), stations=30)
+    readings = _swept(prism(circle(0.223, (0, 0.183))), path, 0.05)
+    assert set(readings.table["status"]) == {"ok"}
+    assert [e["kind"] for e in readings.provenance["events"]][-1] == "slip-off"
+    assert np.nanmax(rod_residuals(readings)) < 1e-10
+
+
+def test_where_no_law_goes_on_past_a_phase_it_slips_off() -> None:
+    """As without friction, and as much later as there is friction."""
+    body = cylinder(0.04, through=(0, 0.64, 0), axis=(0.83, -0.56, -0.03))
+    path = FootPath([[1.3, 0.05], [-1.3, -0.18]], stations=5)
+    last = [_swept(body, path, x).provenance["events"][-1] for x in (0.0, 0.01, 0.02)]
+    assert [event["kind"] for event in last] == ["slip-off"] * 3
+    off = [event["travel"] for event in last]
+    assert off[2] - off[1] == pytest.approx(off[1] - off[0], rel=0.05)
+
+
+def test_once_it_cannot_be_followed_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It may hold on long after the straight vibrissa is clear of the body, or back again."""
+    monkeypatch.setattr(Branch, "after", lambda *_: None)
+    path = FootPath([[1.2, 0.1], [-1.2, 0.1], [1.2, 0.1]], stations=40)
+    status = _swept(sphere(0.2, (0, 0.5, 0)), path, 0.3).table["status"]
+    assert (status[status.ne("ok").argmax() :] == "diverged").all()
 
 
 def test_what_sticks_at_first_contact_is_never_called_free(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -141,12 +141,12 @@ def test_there_and_back_are_two_sweeps():
 def test_rows_out_of_order_and_repeated_positions():
     shuffled = read_measured(TABLE.sample(frac=1, random_state=1), beam=BEAM, columns=COLUMNS)
     assert_same(shuffled)
-    assert shuffled.provenance["rows"]["out_of_order"] > 0
+    assert min(shuffled.provenance["rows"][name] for name in ("out_of_order", "retreats")) > 0
     thrice = TABLE.loc[np.repeat(TABLE.index, 3)]
     thrice["Fx"] += np.tile([-0.5, 0.0, 0.5], 40)
     repeated = read_measured(thrice, beam=BEAM, columns=COLUMNS)
     assert_same(repeated)
-    assert repeated.provenance["rows"] == {"out_of_order": 0, "averaged": 80}
+    assert repeated.provenance["rows"] == {"out_of_order": 0, "retreats": 0, "averaged": 80}
     jitter = TABLE.assign(stage=FOOT + 0.03 * np.random.default_rng(0).standard_normal(40))
     found = read_measured(jitter, beam=BEAM, columns=COLUMNS)
     assert (np.diff(found.values("foot_x")) < 0).all()

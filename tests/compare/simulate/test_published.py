@@ -42,7 +42,7 @@ FOUND = {
     "Rat's whisker": ({"links", "gravity", "contact"}, {"links"}, 0.04),
     "Mouse's whisker": ({"clamp", "contact", "damping"}, set(), 0.0040),
     # Boxes: what touches them feels steps of their thickness.
-    "Spiral robot": ({"clamp", "limits", "radius", "gravity", "contact"}, {"radius"}, 0.13),
+    "Spiral robot": ({"clamp", "radius", "gravity", "contact"}, {"radius"}, 0.13),
 }  # fmt: skip
 _STEPS = 400  # in T1, of those whose own are far shorter
 _STABLE = 0.4  # of the longest step of a plugin

@@ -17,6 +17,7 @@ from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain, OnRail
 from tests.mujoco_models.inspect.rods import Rod
 
+CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
 SENSORS = {"force sensor", "torque sensor"}
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
 FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
@@ -43,7 +44,7 @@ def of_rods(*values):
         (OnRail(tip='gap="0.02"'), STATED),  # where MuJoCo looks for contacts, and nothing pushes
         (OnRail(beside='<geom type="plane" size="1 1 1" pos="0 0 -0.05"/>'), STATED),
         # A straight taper.
-        (OnRail(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}, solref="0.06 1"), None),
+        (OnRail(stiffer=CONE, solref="0.06 1"), None),
         pytest.param(Rod(edges=12), WIRE, marks=rods),
         of_rods(Rod(), WIRE),
         of_rods(Rod(10, dof=""), WIRE),
@@ -158,11 +159,18 @@ def test_what_stands_out_is_not_to_be_touched(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(mujoco.MjModel, "jnt_stiffnesspoly"), reason="of MuJoCo 4")
-@pytest.mark.parametrize("stiffness", ["20 0 1e4", "20 8"])
-def test_springs_that_stiffen_are_no_lack_of_links(tmp_path, stiffness):
-    """Of the second one readings were 4 % off."""
-    found = changed(tmp_path, OnRail(), ('stiffness="20.0"', f'stiffness="{stiffness}"'))
-    assert any("its springs stiffen" in str(fault) for fault in found.faults)
+@pytest.mark.parametrize("stiffness", ["0 1e4", "8"])
+@pytest.mark.parametrize("chain", [OnRail(), OnRail(stiffer=CONE)])
+def test_springs_that_stiffen_are_no_lack_of_links(tmp_path, stiffness, chain):
+    """Of the second one readings were 4 % off; no cantilever says it of a taper."""
+    path = chain.write(tmp_path)
+    path.write_text(
+        re.sub(r'stiffness="([^"]*)"', rf'stiffness="\1 {stiffness}"', path.read_text())
+    )
+    found = Inspection(inspect_model(path))
+    assert sum("its springs are not linear" in str(fault) for fault in found.faults) == 1
+    after = fix(path, {}, found, tmp_path / "fixed.xml").inspection
+    assert "large bending" not in faults_in(after)
 
 
 def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
@@ -181,7 +189,7 @@ def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
         (OnRail(first="start", length=2.0), 40.0),  # whatever the length
         (OnRail(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
         (OnRail(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
-        (OnRail(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),
+        (OnRail(stiffer=CONE), np.inf),
     ],
 )
 def test_the_clamps_compliance_is_measured(tmp_path, chain, stiffness):
@@ -290,9 +298,6 @@ def test_no_dampers_are_noted(tmp_path):
     assert "no dampers" in said.text
 
 
-CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
-
-
 @pytest.mark.parametrize(("tapered", "noted"), [(True, False), (False, True)])
 def test_a_taper_of_ei_without_one_of_radius_is_noted(tmp_path, tapered, noted):
     path = OnRail(stiffer=CONE).write(tmp_path)
@@ -344,6 +349,26 @@ def test_a_change_of_the_text_is_named_as_far_as_it_matters(tmp_path, old, new, 
     found = changed(tmp_path, OnRail(), (old, new))
     said = found.remarks if subject == "medium" else found.faults
     assert (subject in {one.subject for one in said}) is named
+
+
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [("-0.01 1", ["fault"]), ("0 1", ["fault"]), ("-1 0.01", ["note"]), ("-1 1", [])],
+)
+def test_limits_are_those_of_the_side_to_which_a_sweep_bends(tmp_path, ends, said):
+    """The larger end was looked at, and at its end a joint seemed half as stiff, or twice."""
+    before = changed(tmp_path, OnRail(), (HINGE, f'<joint range="{ends}" axis'))
+    assert [one.kind for one in before.remarks if one.subject == "limits"] == said
+    assert faults_in(before) == ({"limits"} if said == ["fault"] else set())
+    assert fix(tmp_path / "whisker.xml", {}, before, tmp_path / "fixed.xml").inspection.sound
+
+
+@rods
+def test_limits_of_a_rod_are_those_of_a_default(tmp_path):
+    path = Rod(edges=12).write(tmp_path)
+    default = '<default><joint range="-0.001 0.001"/></default><worldbody>'
+    path.write_text(path.read_text().replace("<worldbody>", default))
+    assert "limits" in faults_in(Inspection(inspect_model(path)))
 
 
 def test_a_sensor_that_reads_nothing_is_not_where_the_load_goes(tmp_path):

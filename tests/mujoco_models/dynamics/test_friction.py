@@ -153,6 +153,7 @@ def test_what_motion_in_space_cannot_is_refused_in_a_line() -> None:
         (replace(BALL, path=bent), IN_SPACE, N20, "points"),
         (BALL, IN_SPACE, SpatialSettings(segments=20, joints="universal"), "beam"),
         (BALL, replace(IN_SPACE, timestep=0.02), N20, "timestep"),
+        (BALL, replace(IN_SPACE, speed=1e-5), N20, "speed"),
         (replace(BALL, beam=Beam(radius=0.0)), IN_SPACE, N20, "radius"),
     ):
         with pytest.raises(InputError, match=word):

@@ -150,6 +150,8 @@ def test_bad_settings_are_one_line(change, name):
 def test_what_cannot_move_yet_is_refused():
     with pytest.raises(InputError, match="planar"):
         simulate_motion(CASE, Motion(), replace(SMOOTH, planar=False))
+    with pytest.raises(InputError, match="speed"):
+        simulate_motion(CASE, Motion(speed=1e-6), SMOOTH)
 
 
 def test_the_default_contact_is_as_stiff_as_the_step_allows():

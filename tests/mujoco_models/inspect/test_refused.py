@@ -112,6 +112,17 @@ def test_a_tendon_that_holds_it_is_named(tmp_path, tendon):
     assert found.tip_rigidity == pytest.approx(1, rel=1e-3)
 
 
+def test_a_tendon_on_a_joint_that_pulls_to_one_side_is_no_spring_of_it(tmp_path):
+    """By its mean to both sides it had half its stiffness, and no fault where EI tapers."""
+    joint = ("<joint axis", '<joint name="j" axis', 1)
+    tendon = '<tendon><fixed stiffness="20" springlength="{}"><joint joint="j" coef="1"/>'
+    both, one = (f"{tendon.format(at)}</fixed></tendon>{END}" for at in ("0", "-1 0"))
+    first = measured(tmp_path, Chain(), joint, (END, both)).joints[0]
+    assert first.compliance == pytest.approx(1 / 40)
+    with pytest.raises(InputError, match="'whisker1' of the vibrissa = held by a tendon"):
+        measured(tmp_path, Chain(), joint, (END, one))
+
+
 def test_a_link_at_an_end_without_a_geom_is_named(tmp_path):
     """Its end is not known: it was taken for that of the link before, which it turns back to."""
     path = Chain().write(tmp_path)

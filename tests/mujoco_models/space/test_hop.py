@@ -83,6 +83,17 @@ def test_a_side_that_comes_over_a_corner_goes_where_the_way_down_leads(
     assert max(seen) < 1e-6  # Newton's method ends both
 
 
+def test_a_hop_is_no_change_of_phase(tmp_path):
+    """Hops go from the tip to the side and back; as in the closed form, none begins a phase."""
+    case = trial(515, tmp_path)
+    exact, found = (
+        [event for event in readings.provenance["events"] if event["kind"] == "phase"]
+        for readings in (solve_space(case), simulate_space(case, SpatialSettings(segments=20)))
+    )
+    places = [[event["travel"] for event in events] for events in (exact, found)]
+    assert places[0] == pytest.approx(places[1], abs=2e-3)
+
+
 @pytest.mark.parametrize(
     ("segments", "lean"), [(40, 0.0), (40, 0.05), pytest.param(80, 0.0, marks=pytest.mark.slow)]
 )
