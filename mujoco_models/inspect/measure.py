@@ -243,7 +243,7 @@ def _joints(
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
     bodies = held.parts.chain
-    names = [held.model.body(body).name or f"body {body}" for body in bodies]
+    names = [name_of(held.model.body(body), "body") for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
     masses = masses_of(held.model, bodies)
     cells = np.diff(bounds)
@@ -256,9 +256,17 @@ def _joints(
             )  # fmt: skip
     figures = np.stack([s, cells, compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
-        Joint(name, (*joints_of(held.model, body),), *row)
-        for name, body, row in zip(names, bodies, figures, strict=True)
+        Joint(name, (*joints_of(held.model, body),), _rigid(held.model, body, after), *row)
+        for name, body, after, row in zip(names, bodies, (*bodies[1:], 0), figures, strict=True)
     )
+
+
+def _rigid(model: mujoco.MjModel, body: int, after: int) -> tuple[str, ...]:
+    """The bodies from one to the next that are fixed to the first."""
+    found = []
+    while (after := int(model.body_parentid[after])) != body and model.body_weldid[after] == body:
+        found.append(name_of(model.body(after), "body"))
+    return tuple(found)
 
 
 def _bent(

@@ -17,6 +17,7 @@ from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain, OnRail
 from tests.mujoco_models.inspect.rods import Rod
 
+TENTH_JOINT = r'(?<=name="whisker10" pos="0 0.05 0">)<joint [^>]*>'
 CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
 SENSORS = {"force sensor", "torque sensor"}
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
@@ -110,6 +111,15 @@ def test_planted_mistakes_are_named_and_nothing_else(tmp_path, model, said):
     assert len(subjects - SENSORS) <= 1, found
 
 
+def test_a_joint_that_is_missing_is_no_stiffness_of_its_neighbours(tmp_path):
+    """And what is fixed to a link is the vibrissa's own, which was in its way."""
+    path = OnRail().write(tmp_path)
+    path.write_text(re.sub(TENTH_JOINT, "", path.read_text()))
+    (said,) = Inspection(inspect_model(path)).faults
+    assert "'whisker10' has no joint" in said.text
+    assert not said.edits
+
+
 def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     """MuJoCo lets no parent touch its child, but the world."""
     found = faults(tmp_path, Chain(foot=""), STATED)
@@ -143,6 +153,9 @@ UNSEEN = 'contype="0" conaffinity="0" '
         ((TENTH, f"{BALL}{TENTH}{UNSEEN}"), "nothing can touch from s = 0.4"),
         ((TENTH, f'<geom name="arm" fromto="0 0 0 .1 0 0"/>{TENTH}'), "'arm' stands out from the"),
         ((TENTH, f"{BALL}{TENTH}"), None),
+        # Swept so, one read 3 % off.
+        (('"0 0 0 0 0.05 0"', '".008 0 0 .008 0.05 0"'), "is 8.0e-03 L beside the vibrissa"),
+        (('"0 0 0 0 0.05 0"', '"0 0 .008 0 0.05 .008"'), None),
     ],
 )
 def test_what_touches_is_along_all_of_it(tmp_path, change, said):
