@@ -160,14 +160,17 @@ class StraightVibrissa:
     def lowest_contact(self, travel: float, arc_length: float) -> float:
         """Where the side begins to touch: along an upright face it bends about the lower end."""
         foot, tangent = self.foot(travel), self.path.clamp_tangent
+
+        def below(place: float) -> bool:
+            normal = self.body.nearest(foot + place * tangent, _ANY).normal
+            return float(normal @ tangent) < -_UPRIGHT
+
         low, high = 0.0, arc_length
         while high - low > _CLOSEST:
             middle = (low + high) / 2
-            if self.body.nearest(foot + middle * tangent, _ANY).normal @ tangent < -_UPRIGHT:
-                low = middle
-            else:
-                high = middle
-        return high
+            low, high = (middle, high) if below(middle) else (low, middle)
+        # Where a smooth body's side becomes flat it is curved below, where the contact goes.
+        return low if self.body.smooth and not below(arc_length) else high
 
     def next_touch(self, begin: float) -> float | None:
         return first_touch(self._size, begin, self._corners_after(begin), _EXACT)

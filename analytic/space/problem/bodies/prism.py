@@ -68,7 +68,7 @@ class Prism(Body):
         low, high = self.contour.t_range
         on_side = t in (low, high) and up > eta
         if on_side:  # the upright side above the end
-            sine, cosine, eta, turning = np.sign(sine), 0.0, up, 0.0
+            sine, cosine, eta, turning, stretch = np.sign(sine), 0.0, up, 0.0, 1.0
         normal = sine * self.frame[0] - cosine * self.frame[1]
         tangent = cosine * self.frame[0] + sine * self.frame[1]
         distance = (across_it - xi) * sine - (up - eta) * cosine
@@ -87,12 +87,12 @@ class Prism(Body):
             return float(places[0])
         if ahead[-1] >= 0 and x >= right:
             return float(places[-1])
-        # Above an end, on the other side of it, such normals are far off.
-        last = -1 if 2 * x >= left + right else 0
         falls = np.flatnonzero((ahead[:-1] > 0) & (ahead[1:] <= 0))
         if not len(falls):  # inside
-            return float(places[last])
-        end = int(falls[last]) + 1
+            return float(places[-1 if 2 * x >= left + right else 0])
+        # On the other side of a thin body there is one, too: the nearest one's tangent is farthest.
+        off = (x - there.xi) * np.sin(there.alpha) - (y - there.eta) * np.cos(there.alpha)
+        end = int(falls[np.argmax(np.maximum(off[falls], off[falls + 1]))]) + 1
         low, high = float(places[end - 1]), float(places[end])
         t = low + (high - low) * float(ahead[end - 1] / (ahead[end - 1] - ahead[end]))
         rounding = _ROUNDING * float(places[-1] - places[0])
