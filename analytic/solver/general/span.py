@@ -105,7 +105,8 @@ def _second_kind(S: Floats, S_S: Floats, cn: Floats, dn: Floats, m: Floats, root
     if first.all():  # no longer than a quarter of a period
         return rising
     quarter = np.zeros_like(S)
-    quarter[~first] = elliprd(0.0, 1 - m[~first], 1.0) / (3 * root[~first] ** 3)
+    whole = np.maximum(3 * root[~first] ** 3, _TINY)
+    quarter[~first] = elliprd(0.0, 1 - m[~first], 1.0) / whole
     return np.where(
         S >= 0,
         np.where(cn >= 0, rising, 2 * quarter - rising),

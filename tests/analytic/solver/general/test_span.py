@@ -63,3 +63,9 @@ def test_circle_that_a_couple_straightens():
     found = back_to_clamp(slope, none, none, lengths)  # natural curvature and couple cancel
     np.testing.assert_allclose(found.along, lengths * np.cos(0.4), rtol=1e-15)
     np.testing.assert_allclose(found.across, lengths * np.sin(0.4), rtol=1e-15)
+
+
+def test_a_span_of_no_force_may_seem_shorter_than_nothing():
+    """As a step of Newton's method makes it between two contacts: a warning, before."""
+    start = back_to_clamp(*(np.array([x]) for x in (0.3, 0.0, 0.0, -1e-3)))
+    assert np.isfinite(start.p).all()
