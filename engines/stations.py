@@ -71,6 +71,12 @@ class Row:
                     raise InputError(f"Row.{name}", what, "a number", "give a float") from error
 
     @property
+    def missing(self) -> list[str]:
+        """What of the state is no number, though it has to be one."""
+        sensed = "force_x", "force_y", "moment_z", "tip_angle"
+        return [name for name in sensed if not np.isfinite(getattr(self, name))]
+
+    @property
     def load(self) -> float:
         """Of the contact, which the clamp holds."""
         return float(np.hypot(self.force_x, self.force_y))
@@ -204,7 +210,7 @@ class _Walk:
     def _follows(self, row: Row) -> bool:
         """Whether a state is the neighbour of the last one."""
         last = self._last
-        if not np.isfinite([row.force_x, row.force_y, row.moment_z, row.tip_angle]).all():
+        if row.missing:
             return False
         near = abs(row.tip_angle - last.tip_angle) < _TURN
         if row.phase == "free":
@@ -217,6 +223,8 @@ class _Walk:
     def _end(self, trial: float, row: Row | None) -> None:
         """The branch ends here: it let go, in a fold, or the solver failed."""
         let_go, doubt = row is not None and row.phase == "free", row.doubt if row else ""
+        if row is not None and row.missing:
+            doubt = doubt or f"at(foot_x={trial:.4g}) gave no number in {', '.join(row.missing)}"
         if not doubt and self._last.load >= _HELD and (let_go or self._folds(trial)):
             self.snap_off = (self.foot_x + trial) / 2
         else:

@@ -109,6 +109,7 @@ def estimate(
     seed: int = 0,
     rows: Sequence[int] | None = None,
     shared: Sequence[int] = (),
+    since: Floats | None = None,
 ) -> Estimated:
     """The numbers that explain readings best, whatever their noise remembers.
 
@@ -119,7 +120,8 @@ def estimate(
     narrower than white noise of the standard deviation `least` makes them. `rows` says how many
     stations each pass has, by default all are of one: noise of one pass does not remember that of
     another, but is of one kind in all. Of the numbers that are `shared` a pass alone says nothing:
-    its others are those beside what all passes say of these.
+    its others are those beside what all passes say of these. `since` (n,) is how many stations each
+    is behind the one before it, by default one.
     """
     known = by_number.shape[2]
     rows = [len(readings)] if rows is None else rows
@@ -139,11 +141,13 @@ def estimate(
         uncertain = np.append(uncertain, np.full(line.shape[2], np.inf))
     block = len(readings) // _ENOUGH + 1  # stations of which one is made
     columns = np.concatenate([_in_blocks(one, rows, block) for one in parts], axis=2)
+    since = np.ones(len(readings)) if since is None else since
+    since = _in_blocks(since[:, None, None], rows, block).ravel() / np.sqrt(block)
     rows = [_blocks(n, block) for n in rows]
     sizes = np.sqrt(np.einsum("ncm,ncm->m", *2 * [columns[:, :, :-1]]))
     sizes[sizes == 0] = 1.0
     columns[:, :, :-1] /= sizes
-    gram, root = _gram(columns, rows)
+    gram, root = _gram(columns, rows, since)
     prior = np.zeros(len(sizes) + 1)
     prior[known:-1] = 1 / (uncertain * sizes[known:]) ** 2
     # The noise is what each pass's own numbers leave: passes that differ are no noise.
@@ -164,6 +168,8 @@ def estimate(
     for channel in range(readings.shape[1]):
         at = draw.choice(len(_GRID), size=draws, p=likely[:, channel])
         variance = square[at, channel] / draw.chisquare(freedom[channel], size=draws)
+        # It is no less than stated, remembering or not: few stations show less of what does.
+        variance = np.maximum(variance, least**2 / (1 + _GRID[at, 1]))
         drawn.append((at, channel, variance[:, None, None]))
     systems = (sum(one[at, channel] / size for at, channel, size in drawn) for one in gram)
     one_by_one = _without_nuisances(systems, prior, known)[0]
@@ -210,7 +216,7 @@ def _in_blocks(columns: Floats, rows: Sequence[int], block: int) -> Floats:
     return np.asarray(means * np.sqrt(block))
 
 
-def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
+def _gram(columns: Floats, rows: Sequence[int], since: Floats) -> tuple[Floats, Floats]:
     """Products of the columns whitened by each noise of the grid, and its log determinants.
 
     Kalman's filter of the correlated part, shape (n, channels, m) to (passes, grid, channels, m,
@@ -221,21 +227,23 @@ def _gram(columns: Floats, rows: Sequence[int]) -> tuple[Floats, Floats]:
     begins = (np.cumsum(rows) - rows)[order]
     lengths = np.asarray(rows)[order]
     rho, size = _GRID.T
-    variance, expected = size.copy(), np.zeros((len(rows), len(rho), channels, m))
+    variance, expected = np.tile(size, (len(rows), 1)), np.zeros((len(rows), len(rho), channels, m))
     products, logarithm = np.zeros((*expected.shape, m)), np.zeros(len(rho))
     steps = np.arange(lengths[0])
     for some in np.array_split(steps, lengths[0] * expected.size // _AT_ONCE + 1):
         white = np.zeros((len(some), *expected.shape))
         for new, step in zip(white, some.tolist(), strict=True):
             working = int(np.sum(lengths > step))
-            new, now = new[:working], expected[:working]
+            new, now, here = new[:working], expected[:working], begins[:working] + step
+            left = rho ** since[here, None]
+            now *= left[:, :, None, None]
+            variance = left**2 * variance[:working] + size * (1 - left**2)
             total = 1 + variance
-            np.subtract(columns[begins[:working] + step, None], now, out=new)
-            now += (variance / total)[:, None, None] * new
-            now *= rho[:, None, None]
-            new /= np.sqrt(total)[:, None, None]
-            logarithm += working * np.log(total)
-            variance = rho**2 * variance / total + size * (1 - rho**2)
+            np.subtract(columns[here, None], now, out=new)
+            now += (variance / total)[:, :, None, None] * new
+            new /= np.sqrt(total)[:, :, None, None]
+            logarithm += np.log(total).sum(axis=0)
+            variance /= total
         stations = white.transpose(1, 2, 3, 0, 4)
         products += stations.swapaxes(-1, -2) @ stations
     found = np.empty_like(products)

@@ -1,5 +1,6 @@
 """Mistakes of signs, axes and units that would explain readings of no such vibrissa."""
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -13,7 +14,10 @@ from analytic.problem.readings import Readings
 
 _LOOKED_AT = 200  # stations; more say nothing new
 _EXPLAINS = 0.95  # of the stations: a few lie between two phases, or are spikes
-_UNITS = (9.80665, 1e3, 1e6)  # by which units are mistaken: kgf and N, milli, micro
+# Units in those that they are taken for, or that are taken for them.
+_OF_FORCE = {"uN": 1e-6, "mN": 1e-3, "kgf": 9.80665, "gf": 9.80665e-3, "lbf": 4.448222}
+_OF_MOMENT = {**_OF_FORCE, "mN mm": 1e-6, "N mm or mN m": 1e-3, "N cm": 1e-2}
+_OF_ARM = {("N mm", "N cm"): 10.0, ("mm", "inches"): 25.4}
 _LARGE = 0.9  # quantile that is called the size of a reading
 # Of 1,300 random sweeps it is 0.03 to 0.7; of a force that is a thousand times too large, whatever
 # the others are, all contacts would be at the tip.
@@ -21,7 +25,7 @@ _LEAST_ARM, _LONGEST_ARM = 0.01, 1.1
 # Times the stated flexural rigidity, where it is to be found; then times the best one of these.
 _RIGIDITIES = np.geomspace(0.7, 1.4, 13), np.geomspace(0.965, 1.035, 8)
 _MANY = 0.3  # of the stations that a rigidity near the right one makes contacts
-_OF_A_SENSOR = _UNITS[:2]  # by which those of its two forces differ
+_OF_A_SENSOR = 9.80665, 1 / 9.80665, 1e3, 1e-3  # by which those of its two forces differ
 _FORCES = CLAMP_READINGS[:2]
 
 
@@ -31,6 +35,7 @@ class _Mistake:
 
     of: str
     by: str = ""
+    size: float = 1.0  # of a unit: how many times too large
     factors: dict[str, float] = field(default_factory=dict)
     swapped: tuple[str, ...] = ()
 
@@ -65,14 +70,15 @@ def likely_mistakes(
 def _explaining(
     mistakes: Iterable[_Mistake], readings: Readings, loaded: Booleans, unsure: bool
 ) -> list[str]:
-    found: dict[str, list[str]] = {}
+    found: dict[str, dict[float, str]] = {}
     for one in mistakes:
         right = one.undone(readings)
         far = _LEAST_ARM < _arm(right, loaded) < _LONGEST_ARM
         if far and _explains(right, loaded, unsure):
-            found.setdefault(one.of, []).append(one.by)
+            found.setdefault(one.of, {})[one.size] = one.by
     # Of a unit that more than one size explains, none is said.
-    return [of + (sizes[0] if len(sizes) == 1 else "") for of, sizes in found.items()]
+    likely = {of: decimal_first(sizes) for of, sizes in found.items()}
+    return [of + (found[of][one[0]] if len(one) == 1 else "") for of, one in likely.items()]
 
 
 def _explains(readings: Readings, loaded: Booleans, unsure: bool) -> bool:
@@ -102,15 +108,16 @@ def _mistakes() -> Iterator[_Mistake]:
     for pair in (_FORCES, ("force_y", "moment_z")):  # a sensor that is turned over
         yield _Mistake(f"the signs of {' and '.join(pair)}", factors=dict.fromkeys(pair, -1.0))
     every = dict.fromkeys(CLAMP_READINGS, -1.0)
-    yield _Mistake("all signs", " (the vibrissa's action on the clamp)", every)
+    yield _Mistake("all signs", " (the vibrissa's action on the clamp)", factors=every)
     for swapped in combinations(CLAMP_READINGS, 2):
         yield _Mistake(f"{' and '.join(swapped)}, swapped", swapped=swapped)
     for name in _FORCES:
         turned = "the sensor's axes, turned by 90 degrees"
         yield _Mistake(turned, factors={name: -1.0}, swapped=_FORCES)
-    yield from _of_units(_FORCES, "both forces")
-    yield from _of_units(("moment_z",), "moment_z")
-    yield from _of_units(CLAMP_READINGS, "all three readings, or of the flexural rigidity")
+    yield from _of_units(_FORCES, "both forces", unit_factors())
+    yield from _of_units(("moment_z",), "moment_z", unit_factors(of_moment=True))
+    together = "all three readings, or of the flexural rigidity"
+    yield from _of_units(CLAMP_READINGS, together, unit_factors())
 
 
 def _of_one_force() -> Iterator[_Mistake]:
@@ -118,10 +125,22 @@ def _of_one_force() -> Iterator[_Mistake]:
         yield from _of_units((name,), name, _OF_A_SENSOR)
 
 
-def _of_units(
-    names: tuple[str, ...], called: str, units: tuple[float, ...] = _UNITS
-) -> Iterator[_Mistake]:
-    of = f"the unit of {called}"
-    for unit in units:
-        for factor, way in ((1 / unit, "large"), (unit, "small")):
-            yield _Mistake(of, f" ({unit:.4g} times too {way})", dict.fromkeys(names, factor))
+def _of_units(names: tuple[str, ...], called: str, sizes: Iterable[float]) -> Iterator[_Mistake]:
+    for size in sizes:
+        by = f" ({max(size, 1 / size):.4g} times too {'large' if size > 1 else 'small'})"
+        yield _Mistake(f"the unit of {called}", by, size, dict.fromkeys(names, 1 / size))
+
+
+def unit_factors(of_moment: bool = False) -> dict[float, str]:
+    """What a reading is larger by in another unit, and which was taken for which."""
+    newton, units = ("N m", _OF_MOMENT) if of_moment else ("N", _OF_FORCE)
+    pairs = {(name, newton): 1 / size for name, size in units.items()}
+    pairs |= _OF_ARM if of_moment else {}
+    pairs |= {(taken_for, name): 1 / factor for (name, taken_for), factor in pairs.items()}
+    return {factor: f"{name} taken for {taken_for}" for (name, taken_for), factor in pairs.items()}
+
+
+def decimal_first(factors: Iterable[float]) -> list[float]:
+    """Of the factors that explain readings the powers of ten; all of them if there are none."""
+    found = list(factors)
+    return [one for one in found if round(math.log10(one), 9).is_integer()] or found

@@ -40,6 +40,9 @@ PHASE_NUMBER = {word: number for number, word in enumerate(PHASES)}
 STATUS_NUMBER = {word: number for number, word in enumerate(STATUSES)}
 
 
+IN_SPACE = ("force_z", "moment_x", "moment_y")  # which no sweep in the plane has
+
+
 class Column(NamedTuple):
     dimension: Literal["length", "force", "moment", "force/length", "angle"]
     odd: bool = False  # changes its sign in a mirror, x to -x
@@ -62,8 +65,7 @@ SCHEMA = {
     "sideways_stiffness": Column("force/length"),
     # In space only, where there is no such mirror.
     **dict.fromkeys(("travel", "foot_y", "foot_z", "contact_z"), Column("length")),
-    "force_z": Column("force"),
-    **dict.fromkeys(("moment_x", "moment_y"), Column("moment")),
+    **dict(zip(IN_SPACE, (Column("force"), Column("moment"), Column("moment")), strict=True)),
 }
 """What has a unit or a sign; all other columns are plain numbers that a mirror leaves alone."""
 ODD = tuple(name for name, column in SCHEMA.items() if column.odd)

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.beam import Beam, Varying
-from analytic.problem.columns import SCHEMA
+from analytic.problem.columns import IN_SPACE, SCHEMA
 from analytic.problem.errors import InputError, require, unknown
 from analytic.problem.files import as_path
 from analytic.problem.shown import Shown, stacked, with_unit
@@ -95,7 +95,7 @@ class SweepTable(Shown):
         """
         table = self.table
         for name in columns:
-            if name not in table and name not in SCHEMA:
+            if name not in table and (name not in SCHEMA or name in IN_SPACE):
                 raise unknown("column of readings", name, [*table])
         missing = np.full(len(table), np.nan)
         found = [

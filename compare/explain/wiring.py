@@ -7,13 +7,10 @@ from itertools import product
 import numpy as np
 
 from analytic import CLAMP_READINGS
+from analytic.from_clamp.mistaken import decimal_first, unit_factors
 from analytic.numerics.arrays import Floats
 from compare.explain.fit import fitted
 
-# Units in those that they are taken for, or that are taken for them.
-_FORCES = {"mN": 1e-3, "kgf": 9.80665, "gf": 9.80665e-3, "lbf": 4.448222}
-_MOMENTS = {**_FORCES, "mN mm": 1e-6, "N mm or mN m": 1e-3, "N cm": 1e-2}
-_LENGTHS = {("N mm", "N cm"): 10.0, ("mm", "inches"): 25.4}
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
 _FURTHEST = 0.5  # L; farther off a sensor does not sit
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
@@ -124,25 +121,18 @@ def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
         for rows in groups:
             weight = np.sum(true[rows] ** 2)
             factor = float(np.sum(true[rows] * seen[rows]) / weight) if weight > 0 else 0.0
-            known = _factors(of_moment=rows == [2])
-            unit = min(known, key=lambda one: abs(np.log(max(factor, 1e-99) / one)))
-            if abs(factor / unit - 1) > _SAME_UNIT:
+            known = unit_factors(of_moment=rows == [2])
+            like = decimal_first(one for one in known if abs(factor / one - 1) <= _SAME_UNIT)
+            if not like:
                 continue
+            unit = min(like, key=lambda one: abs(factor - one))
             gains[rows] = factor
             names = " and ".join(CLAMP_READINGS[i] for i in rows)
             names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
             said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({known[unit]}?)"
-        if len(said) == len(groups):  # of one factor it is one mistake
+        one_mistake = len(groups) > 1 and abs(gains[2] / gains[0] - 1) <= _SAME_UNIT
+        if len(said) == len(groups) and not one_mistake:
             yield Misreading(", ".join(said.values()), np.diag(gains), 1)
-
-
-def _factors(of_moment: bool) -> dict[float, str]:
-    """What a reading is larger by, and which unit was taken for which."""
-    newton, units = ("N m", _MOMENTS) if of_moment else ("N", _FORCES)
-    pairs = {(name, newton): 1 / size for name, size in units.items()}
-    pairs |= _LENGTHS if of_moment else {}
-    pairs |= {(taken_for, name): 1 / factor for (name, taken_for), factor in pairs.items()}
-    return {factor: f"{name} taken for {taken_for}" for (name, taken_for), factor in pairs.items()}
 
 
 def _dead(true: Floats, seen: Floats) -> Iterator[Misreading]:

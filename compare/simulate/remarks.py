@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from analytic import Beam
+from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
 from compare.simulate.expected import SPEED
 from compare.simulate.foot import on_foot
@@ -30,9 +31,7 @@ from mujoco_models.inspect.measured import MeasuredBeam, Sensed, nearest_axes
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _LENGTH = 0.005  # relative; forces go with 1/L^2
-_JOINT = (
-    0.05  # relative; one of twenty that is off by that moves readings by a quarter of a per cent
-)
+_JOINT = 0.05  # relative; one of twenty that is so far off moves readings by 0.25 per cent
 # GJ/EI; a cable of ten links is 0.6 per cent off at 2, 0.9 at 0.3, 2.6 at 0.1 and 48 at 0.012.
 _TORSION = 0.2
 _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
@@ -94,16 +93,7 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "links", f"too few{' for its taper' if tapers(found) else ''}: the "
                      f"tip gives way like one of EI {abs(coarse):.1%} "
                      f"{'lower' if coarse < 0 else 'higher'}", "take more")  # fmt: skip
-    for i, (joint, off_by) in list(enumerate(zip(found.joints, own / rigidity - 1, strict=True)))[
-        1:-1
-    ]:
-        if abs(off_by) > _JOINT:
-            yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
-                         f"{joint.s / found.length:.2f} L, is {abs(off_by):.0%} too "
-                         f"{'stiff' if off_by > 0 else 'soft'} beside its neighbours",
-                         edits=treatment.stiffened(
-                             found, {i: 1 / (joint.compliance * (1 + off_by))}
-                         ))  # fmt: skip
+    yield from _single_joints(found, own / rigidity - 1)
     if tapers(found) or not is_cone(found):
         (start, end), ends = radii(found), smooth_rigidity(found, np.array([0.0, found.length]))
         solid = (f"; with radii from {start:.4g} to {end:.4g} one that is solid would have "
@@ -127,6 +117,24 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
                      "in each: the vibrissa stays bent",
                      edits=(*treatment.joints(found, frictionloss="0"),))  # fmt: skip
+
+
+def _single_joints(found: MeasuredBeam, off: Floats) -> Iterator[Remark]:
+    """Joints that are not as their neighbours, and those that are missing between two."""
+    missing: dict[str, None] = {}
+    for i in (np.flatnonzero(np.abs(off[1:-1]) > _JOINT) + 1).tolist():
+        joint, stiffer = found.joints[i], off[i] > 0
+        if stiffer and (rigid := found.joints[i - 1].rigid + joint.rigid):
+            missing |= dict.fromkeys(rigid)
+            continue
+        right = treatment.stiffened(found, {i: 1 / (joint.compliance * (1 + off[i]))})
+        yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
+                     f"{joint.s / found.length:.2f} L, is {abs(off[i]):.0%} too "
+                     f"{'stiff' if stiffer else 'soft'} beside its neighbours", edits=right
+                     )  # fmt: skip
+    for name in missing:
+        yield Remark("fault", "uniformity", f"{name!r} has no joint, and two links are one",
+                     "give it one as its neighbours have")  # fmt: skip
 
 
 def _beyond_springs(found: MeasuredBeam) -> Iterator[Remark]:

@@ -114,11 +114,16 @@ def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
 def _course(found: MeasuredBeam) -> Iterator[Remark]:
     """Whether what can touch is along all of it, and nowhere else."""
     far, reached = max(found.geoms, key=lambda geom: geom.aside), found.joints[0].s
-    holes = []
+    off, holes = max(found.geoms, key=lambda geom: geom.aside_in_plane), []
     if far.aside > _ASIDE * found.length:
         yield Remark("fault", "contact", f"{far.name!r} stands out from the vibrissa by "
                      f"{far.aside / found.length:.2g} L, and what touches it is no contact of that",
                      edits=(treatment.unseen(far.number),))  # fmt: skip
+    elif off.aside_in_plane > RADIUS * found.length:
+        yield Remark("fault", "contact", f"the axis of {off.name!r} is "
+                     f"{off.aside_in_plane / found.length:.1e} L beside the vibrissa: it touches "
+                     "objects by so much too early or too late", "put it on the line of the joints"
+                     )  # fmt: skip
     for geom in sorted(found.geoms, key=lambda geom: geom.start):
         if geom.start - reached - 2 * geom.radius > _HOLE * found.length:
             holes.append(f"{reached / found.length:.2f} to {geom.start / found.length:.2f} L")

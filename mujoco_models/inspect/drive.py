@@ -60,7 +60,8 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
     row, unit = np.zeros((2, model.nv))
     unit[dof] = 1.0
     mujoco.mj_mulM(model, data, row, unit)
-    held = float(model.dof_damping[dof[0]]), friction_loss(model, dof, speed), float(row[dof[0]])
+    damping = float(damping_at(model, dof, speed)[0])
+    held = damping, friction_loss(model, dof, speed), float(row[dof[0]])
 
     def ahead(limited: bool, ends: Floats, at: float) -> float:
         return float(max((ends - at) * sense)) if limited else inf
@@ -220,6 +221,12 @@ def _refuse_other_drives(model: mujoco.MjModel, joint: int) -> None:
             "one that can be moved by itself",
             "give the joint an actuator of position or velocity, or none",
         )
+
+
+def damping_at(model: mujoco.MjModel, dofs: Integers, rate: float) -> Floats:
+    """The dampers of coordinates at a rate, which since MuJoCo 4 they may change with."""
+    more = getattr(model, "dof_dampingpoly", np.zeros((model.nv, 1)))[dofs]
+    return np.asarray(model.dof_damping[dofs] + more @ rate ** np.arange(1, more.shape[1] + 1))
 
 
 def friction_loss(model: mujoco.MjModel, dofs: Integers, rate: float) -> float:

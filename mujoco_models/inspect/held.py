@@ -62,7 +62,7 @@ class HeldModel:
         self.model.opt.disableflags &= ~_STATED
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
         for field in set(BEYOND).intersection(dir(model)):
-            getattr(self.model, field)[np.isin(model.jnt_bodyid, parts.chain)] = 0
+            getattr(self.model, field)[:] = 0
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0

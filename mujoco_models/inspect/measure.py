@@ -13,6 +13,7 @@ from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
 from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
+    damping_at,
     drive_of,
     friction_loss,
     holders,
@@ -84,19 +85,23 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     s = np.cumsum(lengths(nodes))
     length = float(s[-1])
-    bending = held.bending(axes)
+    bending, chain = held.bending(axes), parts.rod is None
+    slowest = float(np.sqrt(bending.squares[bending.first]))
+    period = 2 * np.pi / slowest
+    rate = _TURN / len(parts.chain) / (_SWEEP * period)
+    dampers = damping_at(model, held.dofs, rate)
+    if chain and (dampers != model.dof_damping[held.dofs]).any():
+        held.model.dof_damping[held.dofs] = dampers
+        bending = held.bending(axes)
     squares, damping = bending.squares, bending.damping
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
-    slowest = float(np.sqrt(squares[bending.first]))
-    period = 2 * np.pi / slowest
     longest = float(2 * np.pi / np.sqrt(squares[0]))
     if not 1 / _LONGEST < longest < _LONGEST:
         raise InputError(
             "model", f"with a first period of {longest:g}", "one with a mass that its springs move",
             "correct the masses of the vibrissa and of what holds it",
         )  # fmt: skip
-    chain = parts.rod is None
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = readings_of(welded or held, axes, tip_rigidity, length)
     probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
@@ -157,7 +162,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
             mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
         ),
         cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
-        friction_loss=friction_loss(model, held.dofs, _TURN / len(joints) / (_SWEEP * period)),
+        friction_loss=friction_loss(model, held.dofs, rate),
         **{
             name: _moved(held, model, field, axes[0] * unit)
             for name, field in zip(("limits", "stiffening"), BEYOND, strict=True)
@@ -243,7 +248,7 @@ def _joints(
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
     bodies = held.parts.chain
-    names = [held.model.body(body).name or f"body {body}" for body in bodies]
+    names = [name_of(held.model.body(body), "body") for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
     masses = masses_of(held.model, bodies)
     cells = np.diff(bounds)
@@ -256,9 +261,17 @@ def _joints(
             )  # fmt: skip
     figures = np.stack([s, cells, compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
-        Joint(name, (*joints_of(held.model, body),), *row)
-        for name, body, row in zip(names, bodies, figures, strict=True)
+        Joint(name, (*joints_of(held.model, body),), _rigid(held.model, body, after), *row)
+        for name, body, after, row in zip(names, bodies, (*bodies[1:], 0), figures, strict=True)
     )
+
+
+def _rigid(model: mujoco.MjModel, body: int, after: int) -> tuple[str, ...]:
+    """The bodies from one to the next that are fixed to the first."""
+    found = []
+    while (after := int(model.body_parentid[after])) != body and model.body_weldid[after] == body:
+        found.append(name_of(model.body(after), "body"))
+    return tuple(found)
 
 
 def _bent(

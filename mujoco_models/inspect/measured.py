@@ -50,6 +50,7 @@ class Joint:
 
     name: str  # the body's, or as ``"body 3"``
     numbers: tuple[int, ...]  # of the body's joints in the model
+    rigid: tuple[str, ...]  # bodies without a joint between this one and the next
     s: float  # its arc length from the clamp [length]
     # Length of the piece of beam that it stands for: half way to its neighbours [length].
     cell: float
@@ -73,6 +74,7 @@ class Geom:
     start: float  # arc lengths of its axis [length]
     end: float  # arc lengths of its axis [length]
     aside: float  # how far an end of its axis is from the vibrissa's [length]
+    aside_in_plane: float  # and without what of that is across the plane of the sweep
     radius: float  # [length]
     size: tuple[float, ...]  # MuJoCo's of a sphere, capsule or cylinder; of others empty
     rounded: bool  # whether its ends are round, and reach beyond its axis: a capsule

@@ -91,7 +91,8 @@ def _geom(
         geom = piece.number if piece.kind == "geom" else -1
         middle = piece.ends.mean(axis=0)
         weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
-    places, aside = _along(nodes, piece.ends)
+    places, beside = _along(nodes, piece.ends)
+    in_plane = beside - np.outer(beside @ axes[2], axes[2])
     start, end = sorted(places.tolist())
     solref, solimp = stated("solref"), stated("solimp").tolist()
     stiffness, decay, ratio = _pushes(model, solref.tolist(), solimp, weight, force)
@@ -102,7 +103,8 @@ def _geom(
         number=piece.number,
         start=start,
         end=end,
-        aside=float(aside.max()),
+        aside=float(np.linalg.norm(beside, axis=1).max()),
+        aside_in_plane=float(np.linalg.norm(in_plane, axis=1).max()),
         radius=piece.radius,
         size=size_of(model, piece.number) if piece.kind == "geom" else (),
         rounded=piece.kind == "geom" and stated("type") == mujoco.mjtGeom.mjGEOM_CAPSULE,
@@ -118,7 +120,7 @@ def _geom(
 
 
 def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """Arc lengths of what of the vibrissa is nearest to points, and how far it is from them."""
+    """Arc lengths of what of the vibrissa is nearest to points, and the ways from it to them."""
     ways = np.diff(nodes, axis=0)
     lengths = np.linalg.norm(ways, axis=1)
     some = lengths > 0  # the clamp may be at the first hinge
@@ -127,8 +129,8 @@ def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:
     least[0], most[-1] = -np.inf, np.inf
     units = ways / lengths[:, None]
     on = np.clip(np.einsum("pij,ij->pi", points[:, None] - starts, units), least, most)
-    off = np.linalg.norm(points[:, None] - starts - on[..., None] * units, axis=-1)
-    best = (np.arange(len(points)), np.argmin(off, axis=1))
+    off = points[:, None] - starts - on[..., None] * units
+    best = (np.arange(len(points)), np.argmin(np.linalg.norm(off, axis=-1), axis=1))
     return np.asarray((np.cumsum(lengths) - lengths + on)[best]), np.asarray(off[best])
 
 
@@ -200,7 +202,7 @@ def _on_same_hand(model: mujoco.MjModel, parts: Parts) -> set[int]:
     """Geoms of bodies that move with the foot, without the vibrissa's."""
     root = model.body_rootid[model.geom_bodyid]
     same = np.flatnonzero((root == model.body_rootid[parts.foot]) & (root != 0))
-    of_chain = np.isin(model.geom_bodyid[same], parts.chain)
+    of_chain = np.isin(model.body_weldid[model.geom_bodyid[same]], parts.chain)
     return {*same[~of_chain].tolist()}
 
 

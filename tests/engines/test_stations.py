@@ -51,6 +51,15 @@ def test_no_state_at_all_is_said_in_other_words():
     assert "no neighbour" in reason and found.provenance["events"]["snap_off"] is None
 
 
+def test_a_state_without_a_number_is_said_to_be_one():
+    """In contact or free: neither a snap-off nor a solver that found nothing."""
+    for row in (replace(LOADED, force_x=np.nan, moment_z=np.inf), Row(*[np.nan] * 3)):
+        turns, found = swept(row)
+        (reason,) = found.provenance["unsettled"]
+        assert reason.startswith(f"at(foot_x={turns:.4g}) gave no number in force_x")
+        assert "moment_z" in reason and found.provenance["events"]["snap_off"] is None
+
+
 def test_what_is_no_state_is_named():
     assert Row(force_x=np.array([-0.5])).force_x == -0.5
     with pytest.raises(InputError, match=r"Row.moment_z = \[1, 2\]: must be a number"):

@@ -198,7 +198,14 @@ def _knowing_the_noise(
         by_number = jacobian.reshape(-1, len(CLAMP_READINGS), len(numbers))
         left = -fit.misses(numbers).reshape(-1, len(CLAMP_READINGS))
         found = estimate(
-            left, by_number, nuisances, known, least, rows=measured.rows, shared=shared
+            left,
+            by_number,
+            nuisances,
+            known,
+            least,
+            rows=measured.rows,
+            shared=shared,
+            since=measured.since,
         )
         relieved.append(found.relief + least * found.of_hum)
         by_pass = tuple((numbers + one, covariance) for one, covariance in found.by_pass)

@@ -25,6 +25,7 @@ _SIGMAS = 5.0  # of its noise; a force of less is none
 _NEXT_TO_SNAP_OFF = 0.02  # of the loaded travel, where readings grow without bound: left out
 _PER_UNKNOWN = 5  # loaded stations at least
 _MOST_ALIKE = 1 - 1e-6  # neighbours; more would divide by nothing
+_GAP = 5.0  # times the median step of the foot; less is of stations that are uneven
 _DECADES = 6  # by which loads may differ from EI/L^2 and EI/L; else the units do
 
 
@@ -83,6 +84,13 @@ class Measured:
         """Share of each station's pass, from -1 at its start to 1, shape (n,)."""
         each = zip(self.passes, self.ends, strict=True)
         return np.concatenate([(2 * self.foot_x[x] - a - b) / (b - a) for x, (a, b) in each])
+
+    @property
+    def since(self) -> Floats:
+        """How many stations each is behind the one before it: more than one behind a gap."""
+        each = [np.abs(np.diff(self.foot_x[one])) for one in self.passes]
+        steps = np.concatenate([np.append(0.0, way / np.median(way)) for way in each])
+        return np.where(steps > _GAP, steps, 1.0)
 
     @property
     def ways(self) -> list[Direction]:

@@ -153,6 +153,22 @@ def _up_to(path: Path, poses: Poses, z: Floats) -> Path:
     )
 
 
+def from_there(path: Path, poses: Poses, p: float) -> Path:
+    """A path of one contact from a parameter of the way on; itself, if it begins later."""
+    if path.p[0] <= p:
+        return path
+    here = np.array([p])
+    z = np.append(solve_places(path, poses, here)[0][0], p)
+    point = _curve(path.contour, path.vibrissa, poses).onward(z)
+    if point is None:
+        return path._replace(complete=False)
+    first = int(path.cells(here)[0]) + 1
+    return path._replace(
+        z=np.vstack([point.z, path.z[first:]]),
+        direction=np.vstack([point.direction, path.direction[first:]]),
+    )
+
+
 def _left_alone(objects: Sequence[Contour], path: Path, poses: Poses) -> Path | None:
     """The path of the contact that is left where the other one's force has ended."""
     pair, vibrissa, last = path.contour, path.vibrissa, path.z[-1]

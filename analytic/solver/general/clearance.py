@@ -6,30 +6,35 @@ vibrissa that is bent towards the object, as one of natural curvature may be bey
 before it, can fail that: it would touch a second time, and the state is none.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.numerics.batches import take
 from analytic.numerics.roots import zeros
+from analytic.problem.beam import Unloaded
 from analytic.problem.clamp_path import Pose
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.pair import Pair, places
 from analytic.solver.general.span import Trail, march
 from analytic.solver.general.states import States, Vibrissa
 
-_PLACES = np.linspace(0, 1, 17)[1:]  # parts of the loaded span, and of the free end
-_FINE = np.linspace(0, 1, 257)[1:]  # the same where two contacts may be close to each other
-_PARTS = _FINE.reshape(32, 8)  # of spans between two contacts, each of which one look may prove
-_MARKS = np.linspace(0, 1, 33)  # of the places at which a vibrissa that varies is known
+Line: TypeAlias = tuple[Floats, Floats, Floats]
+"""Arc lengths and places along lines, shape (k, n)."""
+
+_PARTS = np.linspace(0, 1, 17)  # ends of the parts of a line
+_LEVELS = 2  # of parts: of 1/256 of a line; a bend of 10/L bulges there by 2e-5 L
+_FINE = np.linspace(0, 1, 257)[1:, None]  # where a second contact is sought
 _STRAIGHT = 1e-12  # 1/L; rounding of a natural curvature that vanishes
 _TANGENTS = 65
-_CHUNK = 500  # contacts at a time, so that their places and tangents find room
-_CHUNK_OF_TWO = 128
+_APART = 1e-12  # of contour parameters; of nearer ones each would be the best that is next to it
+_CHUNK = 128  # contacts at a time, so that their places and tangents find room
 _BESIDE = 0.13  # L; twice as far as places are apart, and the cubic errs by 1e-5 L
 _AT_ONCE = 2_000_000  # corners beside contacts, so that they find room
+_BOTH_SIDES = np.array([[-1.0], [1.0]])
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
@@ -49,9 +54,8 @@ def _are_outside(contour: Contour, contact: States, doubtful: Booleans) -> Boole
     """Whether states are outside an object, as those are that are not doubtful."""
     outside = ~(doubtful | np.isnan(contact.excess))
     left = np.flatnonzero(doubtful & np.isfinite(contact.excess))
-    chunk = _CHUNK if contact.inner is None else _CHUNK_OF_TWO
     if left.size:
-        for some in np.array_split(left, 1 + left.size // chunk):
+        for some in np.array_split(left, 1 + left.size // _CHUNK):
             outside[some] = _is_outside(contour, take(contact, some))
     return outside
 
@@ -73,6 +77,18 @@ def deepest(objects: Sequence[Contour], contact: States) -> tuple[int, float, tu
     slope = np.arctan2(*(np.diff(values[ends]) * np.diff(s[ends]) for values in (y, x)))
     alike = objects[which].parameter(np.clip(slope, -np.pi / 2, np.pi / 2))
     return which, float(s[at]), (float(t[at]), float(alike[0]))
+
+
+def has_passed(contour: Contour, contact: States) -> Booleans:
+    """Whether the object's lowest place is right of states, as of what has gone through it."""
+    parts = zip(_loaded(contact, _FINE), _free(contact, _FINE), strict=True)
+    x, y = [np.concatenate([loaded[::-1], free]) for loaded, free in parts][1:]
+    lowest = contour.at(contour.parameter(np.zeros(1)))
+    above = (y > lowest.eta).astype(int)
+    rises = np.diff(above, axis=0)
+    share = (lowest.eta - y[:-1]) / np.where(rises, np.diff(y, axis=0), 1.0)
+    left = x[:-1] + share * np.diff(x, axis=0) < lowest.xi
+    return np.asarray((rises * left).sum(axis=0) > 0)
 
 
 def _starts_outside(contact: States) -> Booleans:
@@ -133,65 +149,98 @@ def bends_one_way(contact: States) -> Booleans:
 
 
 def _is_outside(contour: Contour, contact: States) -> Booleans:
-    s, x, y = _free(contact, _PLACES)
-    if contact.inner is None:
-        loaded = _loaded(contact, _PLACES)
-        s, x, y = (np.concatenate(part) for part in zip(loaded, (s, x, y), strict=True))
-    taper = contact.vibrissa.unloaded.taper(s)
-    outside = np.asarray(_outside(contour, x, y, taper).all(axis=0))
-    return outside if contact.inner is None else outside & _are_spans_outside(contour, contact)
-
-
-def _are_spans_outside(contour: Contour, contact: States) -> Booleans:
-    """Whether both spans between two contacts and the clamp are, which are of one radius.
-
-    A part of them is, if its ends lie beyond the same tangent by more than its sagitta; where no
-    tangent shows that, as next to the contacts, the part is looked at closely.
-    """
-    _, x, y = places(contact, np.append(0.0, _PARTS[:, -1])[:, None])
-    _, beyond = _beyond_tangents(contour, x, y)
-    beyond = beyond.reshape(2, len(_PARTS) + 1, len(contact.force), -1)
-    proven = np.minimum(beyond[:, :-1], beyond[:, 1:]).max(axis=3)
-    span, part, which = np.nonzero(~(proven > _sagittas(contact)[:, None]))
-    _, x, y = places(take(contact, which), _PARTS[part].T)
-    x, y = (np.where(span == 0, *np.split(values, 2)) for values in (x, y))
     outside = np.ones(len(contact.force), dtype=bool)
-    outside[which[~_outside(contour, x, y, np.zeros_like(x)).all(axis=0)]] = False
+    for span in range(2 if contact.inner is None else 3):
+
+        def line(which: Integers, shares: Floats, span: int = span) -> Line:
+            return _span(take(contact, which), span, shares)
+
+        outside &= _is_line_outside(contour, line, contact.vibrissa, len(contact.force))
     return outside
 
 
-def _sagittas(contact: States) -> Floats:
-    """No less than those of parts of the outer span and of the inner one, shape (2, n)."""
-    inner, vibrissa = contact.inner, contact.vibrissa
-    assert inner is not None
-    couple, push = np.abs(vibrissa.friction) * vibrissa.radius, np.hypot(1, vibrissa.friction)
-    # Along a span kappa^2/2 - F cos(angle to F) stays, and F is no larger than both forces.
-    first = np.abs(vibrissa.natural_curvature) + couple * contact.force
-    outer = np.sqrt(first**2 + 4 * push * contact.force)
-    both = push * (contact.force + inner.force)
-    largest = np.array([outer, np.sqrt((outer + couple * inner.force) ** 2 + 4 * both)])
-    lengths = np.array([inner.apart, contact.arc_length - inner.apart]) / len(_PARTS)
-    return np.asarray(largest * lengths**2 / 8)
+def _span(contact: States, span: int, shares: Floats) -> Line:
+    """The free end, and what is loaded; of two contacts beyond the inner one and before it."""
+    if span == 0:
+        return _free(contact, shares)
+    found = _loaded(contact, shares)
+    if contact.inner is None:
+        return found
+    s, x, y = (np.split(values, 2)[span - 1] for values in found)
+    return s, x, y
+
+
+def _is_line_outside(
+    contour: Contour, line: Callable[[Integers, Floats], Line], vibrissa: Vibrissa, count: int
+) -> Booleans:
+    """Whether lines are outside, which have places by shares, or places of their own.
+
+    A part of one is, if both its ends lie beyond the same tangent by more than it may bulge. Where
+    no tangent shows that, as next to a contact, it is looked at closely.
+    """
+    which, shares = np.arange(count), np.repeat(_PARTS[:, None], count, axis=1)
+    for _ in range(_LEVELS):
+        s, x, y = line(which, shares)
+        taper = vibrissa.unloaded.taper(s)
+        _, beyond = _beyond_tangents(contour, x, y)
+        beyond = beyond.reshape(*s.shape, -1) - taper[..., None]
+        proven = np.minimum(beyond[1:], beyond[:-1]).max(axis=2) > _bulge(s, x, y) - _INSIDE
+        part, of = np.nonzero(~proven & (np.diff(s, axis=0) != 0))
+        which, ends = which[of], np.stack([part, part + 1])
+        s, x, y = (values[ends, of] for values in (s, x, y))
+        if not which.size or len(shares) != len(proven) + 1:
+            break
+        begin, end = shares[ends, of]
+        shares = begin + (end - begin) * _PARTS[:, None]
+    outside = np.ones(count, dtype=bool)
+    if which.size:
+        outside[which[~_are_chords_outside(contour, s, x, y, vibrissa.unloaded)]] = False
+    return outside
+
+
+def _bulge(s: Floats, x: Floats, y: Floats) -> Floats:
+    """No less than how far a line is from its chords: on an ellipse, at most, about their ends."""
+    dx, dy = np.diff(x, axis=0), np.diff(y, axis=0)
+    return np.asarray(np.sqrt(np.maximum(np.diff(s, axis=0) ** 2 - dx**2 - dy**2, 0.0)) / 2)
+
+
+def _are_chords_outside(
+    contour: Contour, s: Floats, x: Floats, y: Floats, rest: Unloaded
+) -> Booleans:
+    """Whether both ends of parts are, shape (2, m), and no part has to be inside between them."""
+    taper = rest.taper(s)
+    gaps, nearest = _gaps(contour, x, y, taper + np.abs(np.diff(s, axis=0)))
+    slope = np.arctan2(np.diff(y, axis=0), np.diff(x, axis=0)) + rest.lean * _BOTH_SIDES
+    alike = contour.parameter((slope + np.pi / 2) % np.pi - np.pi / 2)
+    t = np.concatenate([nearest, alike])
+    alpha, xi, eta = (values.reshape(t.shape) for values in contour.at(t.ravel())[:3])
+    dx, dy = x[:, None] - xi, y[:, None] - eta
+    between = (dx * np.sin(alpha) - dy * np.cos(alpha) - taper[:, None]).min(axis=0).max(axis=0)
+    deepest = -_bulge(s, x, y)[0] - _INSIDE
+    return np.asarray((gaps >= taper - _INSIDE).all(axis=0) & (between >= deepest))
 
 
 def is_rest_clear(contour: Contour, vibrissa: Vibrissa, pose: Pose) -> Booleans:
     """Whether the unloaded vibrissa stays outside the object."""
-    s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, pose.foot_x.size))
     rest, clamp_angle = vibrissa.at_rest.shape, float(vibrissa.clamp_angle)
-    x, y, _ = replace(rest, angle=rest.angle - clamp_angle).at(s)
-    outside = _outside(contour, *pose.place(x, y), vibrissa.unloaded.taper(s))
-    return np.asarray(outside.all(axis=0))
+    rest = replace(rest, angle=rest.angle - clamp_angle)
+
+    def line(which: Integers, shares: Floats) -> Line:
+        x, y, _ = rest.at(shares)
+        return shares, *Pose(*(values[which] for values in pose)).place(x, y)
+
+    return _is_line_outside(contour, line, vibrissa, pose.foot_x.size)
 
 
-def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
-    """Arc length and place of parts of the loaded span, shape (k, n)."""
+def _loaded(contact: States, shares: Floats) -> Line:
+    """The loaded span back from its contact."""
     if contact.inner is not None:
-        return places(contact, shares[:, None])
+        return places(contact, shares)
     vibrissa, place = contact.vibrissa, contact.offset_point
     lean = np.arctan(vibrissa.friction)
     slope, push = contact.tip_angle - place.alpha - lean, np.hypot(1, vibrissa.friction)
     if vibrissa.rod is None:
-        s = contact.arc_length * (1 - shares[:, None])
+        s = contact.arc_length * (1 - shares)
         part = vibrissa.back_to_clamp(
             np.broadcast_to(slope, s.shape),
             np.broadcast_to(contact.couple, s.shape),
@@ -203,7 +252,7 @@ def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
     else:
         trail: list[Trail] = []
         beyond = vibrissa.moment_beyond(contact.tip_angle, contact.arc_length)
-        march(
+        end = march(
             vibrissa.rod,
             slope,
             -contact.couple if beyond is None else beyond - contact.couple,
@@ -213,31 +262,29 @@ def _loaded(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
             trail=trail,
         )
         s, along, across, *_ = (np.concatenate(parts) for parts in zip(*trail, strict=True))
-        reached = s.max(axis=1)
-        order = np.argsort(reached)
-        some = np.unique(order[np.searchsorted(reached[order], _MARKS * reached.max())])
-        s, along, across = s[some], along[some], across[some]
+        s = np.vstack([contact.arc_length, s, np.zeros_like(slope)])
+        along, across = (
+            np.vstack([np.zeros_like(slope), *between])
+            for between in ((along, end.along), (across, end.across))
+        )
     sin, cos = np.sin(place.alpha + lean), np.cos(place.alpha + lean)
     return s, place.xi - along * cos + across * sin, place.eta - along * sin - across * cos
 
 
-def _free(contact: States, shares: Floats) -> tuple[Floats, Floats, Floats]:
-    """Arc length and place of parts of the free end, shape (k, n)."""
+def _free(contact: States, shares: Floats) -> Line:
+    """The free end on from the contact."""
     rest, place, begin = contact.vibrissa.unloaded, contact.offset_point, contact.arc_length
     hung = contact.vibrissa.hung(contact.tip_angle, begin)
     if hung is not None:
-        return hung.s.T, place.xi + hung.x.T, place.eta + hung.y.T
-    s = begin + (1 - begin) * shares[:, None]
+        s, x, y = (np.pad(at.T, ((1, 0), (0, 0))) for at in (hung.s, hung.x, hung.y))
+        s[0] = begin
+        return s, place.xi + x, place.eta + y
+    s = begin + (1 - begin) * shares
     x, y, _ = rest.at(s)
     first_x, first_y, slope = rest.at(begin)
     x, y, turned = x - first_x, y - first_y, contact.tip_angle - slope
     sin, cos = np.sin(turned), np.cos(turned)
     return s, place.xi + x * cos - y * sin, place.eta + y * cos + x * sin
-
-
-def _outside(contour: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
-    """Whether the vibrissa, thicker than at its tip by `taper`, is outside; of any shape."""
-    return np.asarray(~(_gaps(contour, x, y, taper)[0] < taper - _INSIDE))
 
 
 def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats, Floats]:
@@ -257,10 +304,13 @@ def _gaps(contour: Contour, x: Floats, y: Floats, taper: Floats) -> tuple[Floats
             dx, dy = place[:, 0] - point.xi, place[:, 1] - point.eta
             return np.asarray(dx * np.cos(point.alpha) + dy * np.sin(point.alpha))
 
-        nearest[left] = zeros(along, begin, end)
-        point = contour.at(nearest[left])
+        found = zeros(along, begin, end)
+        point = contour.at(found)
         dx, dy = seen[left, 0] - point.xi, seen[left, 1] - point.eta
-        gaps[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha)
+        gap = dx * np.sin(point.alpha) - dy * np.cos(point.alpha)
+        # Along a facet all tangents are one, and what is between two of them may be none.
+        nearest[left] = np.where(gap > gaps[left], found, nearest[left])
+        gaps[left] = np.maximum(gaps[left], gap)
     return gaps.reshape(x.shape), nearest.reshape(x.shape)
 
 
@@ -268,6 +318,7 @@ def _beyond_tangents(contour: Contour, x: Floats, y: Floats) -> tuple[Floats, Fl
     """Contour parameters of tangents, and how far places are beyond each, a row for each place."""
     low, high = contour.t_range
     t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
+    t = t[np.append(True, np.diff(t) > _APART)]
     alpha, xi, eta = contour.at(t)[:3]
     ok = np.isfinite(xi) & np.isfinite(eta)
     t, alpha, xi, eta = (values[ok] for values in (t, alpha, xi, eta))

@@ -15,12 +15,13 @@ from analytic.problem.reach import contact_range
 from analytic.solver.general.balance import rates_at, states_at
 from analytic.solver.general.chain import (
     clear_state,
+    from_there,
     joined,
     others_than,
     second_contacts,
     with_second_contacts,
 )
-from analytic.solver.general.clearance import is_clear, is_rest_clear
+from analytic.solver.general.clearance import has_passed, is_clear, is_rest_clear
 from analytic.solver.general.columns import (
     ReadingColumns,
     Units,
@@ -37,6 +38,7 @@ _CONTOUR = 257  # places of a contour, of which the nearest to the foot is sough
 _SHARES = np.linspace(0, 1, 9)  # of a vibrissa, where it may be curved
 AT_ONCE = 16_384  # stations: what is between them and their results needs little memory
 _LOOKS = 2000  # states of two contacts; between two of so many nothing comes and goes
+_ALIKE = 1e-9  # of the way; a path's end that was found twice
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
 
 
@@ -61,14 +63,21 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         none = np.zeros(len(p), dtype=bool)
         return Solved(columns, dict.fromkeys(EVENTS), none, np.empty((0, 3)))
     first = follow(contour, vibrissa, case.touch, case.reach, poses)
-    alone = case.alone
-    objects = contour, *(other.centreline for other in alone)
-    paths = with_second_contacts(objects, first, poses)
-    for other, line in zip(alone, objects[1:], strict=True):
-        # Let go by what was before, the vibrissa comes to the next object.
-        if paths[-1].complete and other.touch and other.touch.p < min(q.p.min() for q in paths):
-            onward = follow(line, vibrissa, other.touch, other.reach, poses)
-            paths += with_second_contacts(objects, onward, poses)
+    others = case.alone
+    objects = contour, *(other.centreline for other in others)
+    paths, alone = with_second_contacts(objects, first, poses), [first]
+    while others and paths[-1].complete:
+        # Let go by what was before, the vibrissa comes to another object, or swings to it.
+        if len(alone) == 1:
+            alone += [
+                follow(line, vibrissa, other.touch, other.reach, poses)
+                for line, other in zip(objects[1:], others, strict=True)
+                if other.touch
+            ]
+        onward = _onward(objects, paths, alone, poses)
+        if onward is None:
+            break
+        paths += with_second_contacts(objects, onward, poses)
     holder = _holders(paths, p)
     held = holder >= 0
     past = (p < first.p[0]) & ~held
@@ -98,6 +107,28 @@ def solve(case: Case, way: Floats | None = None) -> Solved:
         columns["phase"][here] = words["phase"]
         columns["status"][here] = np.where(found, words["status"], STATUS_NUMBER["diverged"])
     return Solved(columns, _events(paths, objects), held | lost, places[held | lost])
+
+
+def _onward(
+    objects: Sequence[Contour], paths: Sequence[Path], alone: Sequence[Path], poses: Poses
+) -> Path | None:
+    """The path of the object that holds the vibrissa next, or catches it as it swings."""
+    last = min(float(path.p.min()) for path in paths)
+    ahead = [path for path in alone if path.p.min() < last - _ALIKE]
+    if not ahead:
+        return None
+    begin = min(last, max(float(path.p[0]) for path in ahead))
+    found = [from_there(path, poses, begin) for path in ahead if path.p[0] >= begin]
+    if begin < last:
+        return found[0]
+    for path in found:
+        state = states_at(path.contour, path.z[:1, :-1], path.vibrissa)
+        others = others_than(path.contour, objects)
+        left = [one for one in others if any(other.contour is one for other in found)]
+        passed = any(has_passed(one, state)[0] for one in left)
+        if not passed and is_clear(path.contour, state, others)[0]:
+            return path
+    return found[0]._replace(complete=False)
 
 
 def _pieces(paths: Sequence[Path], holder: Integers) -> Iterator[tuple[Path, Integers]]:

@@ -15,7 +15,7 @@ from analytic.from_clamp.correlated import Estimated, estimate
 from analytic.from_clamp.fitted import Fitted, check_family, likeliest
 from analytic.from_clamp.noise import DOUBLE_SIDED_95, IDLE, MEDIAN_OF_NORMAL
 from analytic.from_clamp.passes import left_by_noise
-from analytic.numerics.arrays import Booleans, Floats
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
 from analytic.space.from_clamp.families import Family, families
 from analytic.space.from_clamp.reconstruct import (
@@ -75,6 +75,7 @@ class _Contacts(NamedTuple):
     """The stations of one pass that count, and on which side of the tip's release they are."""
 
     clamp: ClampInSpace
+    places: Integers  # which of all they are
     tip: Booleans
     sides: Floats  # two unit vectors across the normal, shape (n, 2, 3)
     spread: Floats  # standard deviation of the six components, shape (6,)
@@ -198,7 +199,9 @@ def _contacts(readings: SpatialReadings, noise: Mapping[str, float] | None) -> _
     at_tip = release > _CLEAR * np.sqrt(variance[1])
     kept = (reach >= 0) & (reach <= LONGEST) & (before | at_tip) & (variance[0] < _NEAR**2)
     rests = len(idle) if noise is None else None
-    return _Contacts(clamp.at(kept), ~before[kept], across(found[3:6, kept].T), spread, rests)
+    return _Contacts(
+        clamp.at(kept), on[kept], ~before[kept], across(found[3:6, kept].T), spread, rests
+    )
 
 
 def _through_points(family: Family, points: Floats, normals: Floats) -> Floats:
@@ -282,6 +285,7 @@ def _with_noise(
         np.max(known_to, axis=0),
         1.0 if stated else 0.0,
         rows=[len(one.tip) for one in passes],
+        since=np.concatenate([np.diff(one.places, prepend=one.places[0] - 1) for one in passes]),
     )
 
 

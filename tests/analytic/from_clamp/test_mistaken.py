@@ -57,6 +57,8 @@ def rig():
         # It was the unit of both: forces without a size are of a vibrissa next to unloaded.
         ({"force_y": 1e-3}, r"likely the unit of force_y \(1000 times too small\)$"),
         ({"moment_z": 1e-3}, r"likely the unit of moment_z \(1000 times too small\)$"),
+        # By kgf, 9.807, it is nearly as well, and was called so.
+        ({"moment_z": 10.0}, r"likely the unit of moment_z \(10 times too large\)$"),
     ],
 )
 def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, factors, likely):

@@ -71,6 +71,7 @@ def test_measured_data_need_four_columns_only(tmp_path):
     assert rig.values("foot_x").tolist() == [1.0, 0.9, 0.8]
     assert rig.trusted.tolist() == [True, True, False] and rig.gaps == 1
     assert pd.isna(rig.values("contact_x")).all()
+    assert "did you mean force_y" in refusal(rig.values, "force_z")
     assert rig.provenance["rows_without_foot_x"] == 1
     assert "1 row without foot_x dropped" in repr(rig)
     assert "each with a finite foot_x" in refusal(Readings, Readings.read_table(path))

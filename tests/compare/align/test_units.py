@@ -54,6 +54,7 @@ UNITS = [
     ({"force_x": 1e3, "force_y": 1e3}, "force_x and force_y in another unit"),
     ({"force_x": 1e-3, "force_y": 1e-3, "moment_z": 1e-6}, "N m taken for mN mm"),
     ({"force_x": 1e-3, "force_y": 1e-3, "moment_z": 1e-3}, "all readings in another unit"),
+    (dict.fromkeys(CLAMP_READINGS, 9.80665), "all readings in another unit: 9.807"),
 ]
 
 

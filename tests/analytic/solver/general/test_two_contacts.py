@@ -195,6 +195,7 @@ def test_the_shape_that_is_drawn_goes_through_both_contacts(friction):
 
 POSTS = [circle(0.05, (0.0, 0.5)), circle(0.05, (-0.3, 0.25))]
 CEILING = [circle(0.05, (0.3, 0.35)), catenary(0.5, -0.3)]
+THIN = Beam(radius=0.0)
 
 
 @pytest.mark.parametrize("objects", [POSTS, CEILING], ids=["two posts", "a post below a wall"])
@@ -224,6 +225,31 @@ def test_the_second_post_is_left_with_the_vibrissa_alone():
     after = (foot_x < both.provenance["events"]["second_contact_end"]) & (foot_x < start)
     assert after.sum() > 20
     np.testing.assert_allclose(both.values("force_y")[after], alone["force_y"][after], atol=1e-9)
+
+
+def test_a_thin_post_is_not_passed_through():
+    """It went unseen between places of the vibrissa a sixteenth apart: 17 mm of L inside, "ok"."""
+    posts = [circle(0.017, (0.1, 0.17)), circle(0.005, (0.43, 0.2))]
+    found = solve_sweep(Case(THIN, posts, Sweep(60)))
+    x, y = deflected_shapes(found)
+    ok = found.table["status"].eq("ok").to_numpy() & found.table["phase"].ne("free").to_numpy()
+    assert ok.sum() > 10
+    for post, radius in zip(posts, (0.017, 0.005), strict=True):
+        lowest = post.at(post.parameter(np.zeros(1)))
+        apart = np.hypot(x - lowest.xi, y - lowest.eta - radius)[ok]
+        assert apart.min() > radius - 1e-6  # a drawing's shape is good to 1e-8
+
+
+def test_what_one_post_lets_go_another_one_catches():
+    """The unloaded vibrissa is past the second long before: it was called free."""
+    posts = [circle(0.03, (0.35, 0.3)), circle(0.03, (-0.37, 0.24))]
+    both = solve_sweep(Case(THIN, posts, Sweep(30)))
+    released, caught = (find_events(post, THIN).snap_off.foot_x for post in posts)
+    assert both.snap_off == pytest.approx(caught, abs=1e-9) and caught < released < -0.4
+    held = both.table["foot_x"].between(caught, released)
+    alone = at_feet(Case(THIN, posts[1]), both.values("foot_x")[held])
+    assert held.sum() > 5 and (both.table["status"] == "ok").all()
+    np.testing.assert_allclose(both.values("force_y")[held], alone["force_y"], atol=1e-9)
 
 
 @pytest.mark.parametrize(
