@@ -12,7 +12,7 @@ from analytic.space.problem.bodies.body import Feature, Spot, across
 from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.contact import APART, Contact, Scene
 from analytic.space.solver.panel import POINTS, Law, Panel, panel
-from analytic.space.solver.sliding import BY_TRAVEL, Leg, Sliding, state_of
+from analytic.space.solver.sliding import BY_TRAVEL, Leg, Sliding, changed, state_of
 from analytic.space.solver.stability import margin, second_variation
 
 _LOOKED_AT = 720  # directions
@@ -165,7 +165,7 @@ class Branch:
         """The state on the next face or edge, and past a seam of faces that are nearly one."""
         done, state = stretch.panel, stretch.last
         for ahead in (_AHEAD, _BESIDE):
-            place = done.beyond(stretch.end + ahead / done.reach)[:3]
+            place = _onward(state, done.law, ahead)[:3]
             scene = self._on(self._scene.body.nearest(place, APART))
             near = state_of(scene, state.vector, state.contact.tangent)
             # The edge was found to `_SAME` only.
@@ -256,12 +256,18 @@ def _past_seam(stretch: Stretch) -> Iterator[Sliding]:
     """The state where a smooth body is curved otherwise: no polynomial goes across."""
     done, last = stretch.panel, stretch.last.contact
     for ahead in (_AHEAD, _BESIDE):
-        vector = done.beyond(stretch.end + ahead / done.reach)
+        vector = _onward(stretch.last, done.law, ahead)
         near = state_of(done.scene, vector, last.tangent)
         if np.abs(near.contact.spot.turning - last.spot.turning).max() > _OTHERWISE:
             found = done.law.settled(done.scene, near, done.by, float(done.by @ vector))
             if found is not None:
                 yield found
+
+
+def _onward(state: Sliding, law: Law, ahead: float) -> Floats:
+    """A little farther along the curve; short panels' polynomials go astray past their ends."""
+    rates = changed(state, law.along_curve(state))
+    return np.asarray(state.vector + ahead * rates / np.sqrt(rates @ rates))
 
 
 def _change(found: Panel) -> float:

@@ -299,12 +299,19 @@ def test_along_an_upright_face_it_bends_about_the_lower_edge() -> None:
 
 
 def test_where_a_flat_side_becomes_round_it_goes_on() -> None:
-    """No polynomial goes across; it neither slid nor stuck there, and what held on was "free"."""
+    """No polynomial goes across; it neither slid nor stuck there, and what held on was "free".
+
+    Nor does it go back: a short panel's polynomial, far past its end, was on the flat side again.
+    """
     path = FootPath([[1.3, 0.12], [-0.4, -0.03]], tangent=(-0.13, 1.0, 0.01), stations=30)
     readings = _swept(prism(circle(0.223, (0, 0.183))), path, 0.05)
     assert set(readings.table["status"]) == {"ok"}
     assert [e["kind"] for e in readings.provenance["events"]][-1] == "slip-off"
     assert np.nanmax(rod_residuals(readings)) < 1e-10
+    body = prism(circle(0.07, (0, 0.386)), (0.863, 0.379, 0.335))
+    path = FootPath([[1.3, -0.103], [-0.481, -0.259]], stations=20)
+    case = SpatialCase(Beam(radius=5e-3), body=body, path=path, friction=2e-4)
+    assert set(solve_space(case).table["status"]) == {"ok"}
 
 
 def test_where_no_law_goes_on_past_a_phase_it_slips_off() -> None:
