@@ -11,6 +11,7 @@ from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.ahead import WAY
 from mujoco_models.inspect.measured import MeasuredBeam
 
+_LEANS = 1e-3  # rad; by 1 degree readings are 6 per cent off
 _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _LEAPS = 0.01  # of the way; by so much a servo leaps as contact ends: by 0.02 it was 0.04 L late
 _SLOWED = 0.45  # of its speed; a sweep ends where it is half of its way behind
@@ -81,6 +82,10 @@ def _reach(found: MeasuredBeam) -> Iterator[Remark]:
     if reach is None:
         return
     own = () if reach.actuator is None else (reach.actuator,)
+    if reach.lean > _LEANS:
+        yield Remark("fault", "foot", f"its slide is {math.degrees(reach.lean):.2g} degrees from "
+                     "across the vibrissa, which nears the object as it goes along",
+                     "turn the slide's axis, or the vibrissa on its foot")  # fmt: skip
     if reach.way < WAY * length:
         yield Remark("fault", "foot", f"its slide ends {reach.way / length:.2g} L to the left, a "
                      f"sweep takes up to {WAY:g} L",

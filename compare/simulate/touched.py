@@ -34,7 +34,12 @@ _HARDEST_EXPLICIT = 0.1
 def on_contacts(found: MeasuredBeam) -> Iterator[Remark]:
     """Whether an object meets it, it alone, and as a hard one."""
     meeting_objects = treatment.contacts(found, contype="0", conaffinity="1")
-    through = [geom for geom in found.geoms if not geom.meets]
+    apart = [geom for geom in found.geoms if geom.kept_apart]
+    if apart:
+        shown = ", ".join(repr(geom.name) for geom in apart[:4])
+        yield Remark("fault", "contact", f"<exclude> keeps {shown} from the world, where objects "
+                     "are", "take that <exclude> away")  # fmt: skip
+    through = [geom for geom in found.geoms if not (geom.meets or geom.kept_apart)]
     if through and not {"contact", "constraint"}.intersection(dict(found.switched)):
         ends = (through[0].start / found.length, through[-1].end / found.length)
         shown = ", ".join(repr(geom.name) for geom in through[:4])

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.numerics.arrays import Booleans, Floats
 from mujoco_models.inspect.drive import holders
 from mujoco_models.inspect.parts import Parts
-from mujoco_models.inspect.touching import thickness
+from mujoco_models.inspect.touching import kept_apart, thickness
 
 WAY = 2.25
 """L; of the foot: past the circle of `case_of` 2.15, and while it gains speed."""
@@ -23,7 +23,8 @@ def on_its_way(
     (low, high), length = _extent(nodes, axes), _length(nodes)
     thick = thickness(model, parts)
     box = low + np.array([-WAY * length, _BEGINS * length, -thick]), high + np.array([0, 0, thick])
-    meets = _filtered(model, parts) & ~_with_foot(model, parts) & ~_excluded(model, parts)
+    excluded = np.isin(model.geom_bodyid, kept_apart(model, parts.chain[-1]))
+    meets = _filtered(model, parts) & ~_with_foot(model, parts) & ~excluded
     return _within(model, data, box, axes, meets)
 
 
@@ -95,14 +96,6 @@ def _filtered(model: mujoco.MjModel, parts: Parts) -> Booleans:
         kind |= model.flex_contype[parts.rod.flex]
         meets |= model.flex_conaffinity[parts.rod.flex]
     return np.asarray(((model.geom_contype & meets) | (model.geom_conaffinity & kind)) > 0)
-
-
-def _excluded(model: mujoco.MjModel, parts: Parts) -> Booleans:
-    """Of bodies that <exclude> keeps from the last one of the vibrissa."""
-    last, pairs = parts.chain[-1], model.exclude_signature
-    ends = np.stack([pairs >> 16, pairs & 0xFFFF])
-    partners = ends[::-1][ends == last]
-    return np.asarray(np.isin(model.geom_bodyid, partners))
 
 
 def _below(model: mujoco.MjModel, body: int) -> Booleans:

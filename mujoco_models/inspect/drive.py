@@ -43,6 +43,7 @@ class Reach:
     inertia: float  # of all that it moves
     gain: float = 0.0  # of an actuator: its force for a length behind, or for a speed
     by_place: bool = False
+    lean: float = 0.0  # of its way from across the vibrissa [rad]
 
 
 def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Reach | None:
@@ -54,6 +55,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     sense = float(np.sign(data.xaxis[joint] @ left))
+    lean = float(np.arcsin(np.linalg.norm(np.cross(data.xaxis[joint], left))))
     spring = float(model.jnt_stiffness[joint])
     start = float(model.qpos0[model.jnt_qposadr[joint]])
     dof, inf = model.jnt_dofadr[[joint]], math.inf
@@ -68,7 +70,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
 
     way = ahead(bool(model.jnt_limited[joint]), model.jnt_range[joint], start)
     if actuator is None or model.actuator_biastype[actuator] != _FOLLOWS:
-        return Reach(joint, actuator, way, inf, inf, inf, inf, True, spring, *held)
+        return Reach(joint, actuator, way, inf, inf, inf, inf, True, spring, *held, lean=lean)
     by_place = model.actuator_biasprm[actuator, 1] != 0
     gear = float(model.actuator_gear[actuator, 0])
     given = model.actuator_ctrlrange[actuator] / gear
@@ -94,6 +96,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
         inertia=held[2],
         gain=-float(model.actuator_biasprm[actuator, 1 if by_place else 2]) * gear**2,
         by_place=bool(by_place),
+        lean=lean,
     )
 
 

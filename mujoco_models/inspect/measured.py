@@ -80,6 +80,7 @@ class Geom:
     rounded: bool  # whether its ends are round, and reach beyond its axis: a capsule
     # Whether it collides with an object that has MuJoCo's default contype and conaffinity.
     meets: bool
+    kept_apart: bool  # from the world, where objects are, by <exclude>
     weight: float  # the acceleration by a unit of force that MuJoCo takes; 0 if it cannot move
     stiffness: float  # force over penetration of its contacts at rest, about [force/length]
     # Of its contacts, as its solref says; NaN if solref states a stiffness [time].

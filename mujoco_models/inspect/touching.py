@@ -98,6 +98,8 @@ def _geom(
     stiffness, decay, ratio = _pushes(model, solref.tolist(), solimp, weight, force)
     off = mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     none_does = model.opt.disableflags & int(off)
+    body = int(model.geom_bodyid[piece.number]) if piece.kind == "geom" else -1
+    apart = 0 in kept_apart(model, body)
     return Geom(
         name=piece.name,
         number=piece.number,
@@ -108,7 +110,8 @@ def _geom(
         radius=piece.radius,
         size=size_of(model, piece.number) if piece.kind == "geom" else (),
         rounded=piece.kind == "geom" and stated("type") == mujoco.mjtGeom.mjGEOM_CAPSULE,
-        meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
+        meets=not (none_does or apart) and bool((stated("contype") | stated("conaffinity")) & 1),
+        kept_apart=apart,
         weight=weight,
         stiffness=stiffness,
         time_constant=float(solref[0]) if solref[0] > 0 else math.nan,
@@ -166,6 +169,13 @@ def name_of_geom(model: mujoco.MjModel, number: int) -> str:
         return "the flex"
     own, body = model.geom(number).name, model.body(model.geom_bodyid[number]).name
     return own or body or f"geom {number}"
+
+
+def kept_apart(model: mujoco.MjModel, body: int) -> list[int]:
+    """The bodies that <exclude> keeps from one."""
+    ends = np.stack([model.exclude_signature >> 16, model.exclude_signature & 0xFFFF])
+    found: list[int] = ends[::-1][ends == body].tolist()
+    return found
 
 
 def self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:

@@ -17,11 +17,9 @@ from tests.compare.simulate.faults import STATED, WIRE, changed, faults_in, rods
 from tests.mujoco_models.inspect.chains import Chain, OnRail
 from tests.mujoco_models.inspect.rods import Rod
 
-TENTH_JOINT = r'(?<=name="whisker10" pos="0 0.05 0">)<joint [^>]*>'
 CONE = {i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}
 POLYNOMIALS = hasattr(mujoco.MjModel, "jnt_stiffnesspoly")
 SENSORS = {"force sensor", "torque sensor"}
-NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
 FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
 
 
@@ -62,6 +60,7 @@ MISTAKES = [
     ({"rigidity": 0.95}, "EI: 0.95, which is 5.0% less than stated"),
     ({"length": 1.02, "rigidity": 1.0}, "length: 1.02, which is 2.0% more than stated"),
     ({"stiffer": {7: 1.2}}, "uniformity: the joint of 'whisker7'"),
+    ({"inside_foot": OnRail.inside_foot.replace("1 0 0", "1 0.01 0")}, "slide is 0.57 degrees"),
     ({"site": 'euler="0 0 0.05"'}, "'F' is turned by 2.9 degrees"),
     ({"tip": 'contype="2" conaffinity="2"'}, "1 of"),
     ({"tip": 'contype="0" conaffinity="0"'}, "meet no object"),
@@ -115,7 +114,8 @@ def test_planted_mistakes_are_named_and_nothing_else(tmp_path, model, said):
 def test_a_joint_that_is_missing_is_no_stiffness_of_its_neighbours(tmp_path):
     """And what is fixed to a link is the vibrissa's own, which was in its way."""
     path = OnRail().write(tmp_path)
-    path.write_text(re.sub(TENTH_JOINT, "", path.read_text()))
+    tenth = r'(?<=name="whisker10" pos="0 0.05 0">)<joint [^>]*>'
+    path.write_text(re.sub(tenth, "", path.read_text()))
     (said,) = Inspection(inspect_model(path)).faults
     assert "'whisker10' has no joint" in said.text
     assert not said.edits
@@ -354,7 +354,7 @@ HINGE = "<joint axis"
         (HINGE, f"<joint {LOSS.format('-1e3')} axis", "friction in joints", False),  # by 0.4 %
         (HINGE, f"<joint {LOSS.format('-1e5')} axis", "friction in joints", True),  # by 2.1 %
         (HINGE, HARD, "inertia", True),
-        ("</mujoco>", NO_CONTACTS, "flags", True),
+        ("</mujoco>", '<option><flag contact="disable"/></option></mujoco>', "flags", True),
         ('integrator="', 'density="1000" integrator="', "medium", True),
         # Three times critical at a sweep's speed it made 3.7 %; here 0.25 and 2 times.
         ('"0.32"', '"0.32 200"', "damping", False),

@@ -262,6 +262,14 @@ def test_what_has_no_name_has_a_number(tmp_path):
     assert found.drive == "slide 'joint 0' without an actuator"
 
 
+def test_what_is_kept_from_the_world_meets_no_object(tmp_path):
+    """It was sound, and let an object through where its tip is."""
+    pair = '<contact><exclude body1="whisker20" body2="world"/></contact>'
+    *others, last = measured(tmp_path, Chain(), (END, pair + END)).geoms
+    assert last.kept_apart and not last.meets
+    assert all(geom.meets and not geom.kept_apart for geom in others)
+
+
 def test_places_are_arc_lengths_of_a_curved_one_too(tmp_path):
     """On a straight line from the clamp its tip would be at 0.96 L."""
     found = measured(tmp_path, Chain(curvature=0.5))
