@@ -69,11 +69,11 @@ def test_events_are_those_of_the_whole_case(plan_of):
         )
         assert (row["outcome"], row["reason"]) == ("done", "")
         for name, place in solve_sweep(case).provenance["events"].items():
-            if name != "out_of_plane":
+            # Curved towards the object, as to the right, it touches twice, which has no column.
+            if f"event_{name}" in row:
                 expected = None if place is None else pytest.approx(place, rel=1e-9)
                 assert row[f"event_{name}"] == expected
-        # Curved towards the object, as to the right, it would touch twice.
-        assert row["phase_b_exists"] == (case.sweep.direction == "left")
+        assert row["phase_b_exists"]
 
 
 def named(stations):
