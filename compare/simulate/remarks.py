@@ -122,10 +122,12 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
 def _single_joints(found: MeasuredBeam, off: Floats) -> Iterator[Remark]:
     """Joints that are not as their neighbours, and those that are missing between two."""
     missing: dict[str, None] = {}
+    usual = np.median([len(joint.rigid) for joint in found.joints])  # each link may have a frame
     for i in (np.flatnonzero(np.abs(off[1:-1]) > _JOINT) + 1).tolist():
         joint, stiffer = found.joints[i], off[i] > 0
-        if stiffer and (rigid := found.joints[i - 1].rigid + joint.rigid):
-            missing |= dict.fromkeys(rigid)
+        rigid = [one.rigid for one in found.joints[i - 1 : i + 1] if len(one.rigid) > usual]
+        if stiffer and rigid:
+            missing |= dict.fromkeys(sum(rigid, ()))
             continue
         right = treatment.stiffened(found, {i: 1 / (joint.compliance * (1 + off[i]))})
         yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
