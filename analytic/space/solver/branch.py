@@ -22,6 +22,7 @@ _FIRST, _LONGEST, _SHORTEST = 0.02, 0.5, 1e-10  # of panels, along the curve's t
 _LONGER, _SHORTER = 2.0, 0.25  # times the last one
 _SHORT = 1e-3, 1e-6  # of panels past an edge, if something happens soon
 _SEAM, _OTHERWISE = 1e-6, 1e-3  # of panels that end at a seam; 1/L, of curvatures past it
+_AT_ONCE = 1e-9  # L of the way, from sticking to sliding or back
 _WHOLLY = 1.0  # of rates: rounding may have made them
 _SAFE = 0.8  # of a length that would just be short enough
 LAST = "slip-off", "release"
@@ -156,9 +157,13 @@ class Branch:
                 return past
         if found and found.law.rubs and self._margins(found, 0)["stick"] < -_STILL:
             found = self._panel(leg, state, True, reach, None)  # the foot has turned
-        following = found and self._stretch(found)
-        if following and max(stretch.end, following.end) <= _CLOSE:
-            return None  # it neither sticks nor slides: what it does depends on its motion
+        if found is None:
+            return None
+        following = self._stretch(found)
+        turns = event is not None or found.law.sticks != done.law.sticks
+        turns &= following.event in ("stick", "slide")
+        if turns and following.last.travel - state.travel <= _AT_ONCE:
+            return None  # it neither sticks nor slides, or rounding alone says which
         return following
 
     def _past_edge(self, stretch: Stretch) -> Iterator[Sliding]:

@@ -15,7 +15,7 @@ from analytic.space.solver.hop import DependsOnMotion, landing
 _CLOSE = 1e-12  # L of the way: a vibrissa that has just come clear does not touch
 _BEYOND = 1e-8  # L, of the foot, where it lands: where it slips off is known to 2e-9 L
 _BESIDE = 1e-6  # L, of the foot: whether it goes away from the body
-_FAINT = 1e-3  # EI/L^2; where rounding leaves no direction of so little friction, it is released
+_FAINT = 1e-2  # EI/L^2; where rounding leaves no direction of so little friction, it is released
 
 
 class Walked(NamedTuple):

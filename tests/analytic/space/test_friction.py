@@ -324,6 +324,18 @@ def test_where_no_law_goes_on_past_a_phase_it_slips_off() -> None:
     assert off[2] - off[1] == pytest.approx(off[1] - off[0], rel=0.05)
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_next_to_release_rounding_makes_no_events(way: int) -> None:
+    """Its mirror image stuck and slid ten times at one place, was lost, or slipped off."""
+    axis = (0.6831191, 0.24007089, -way * 0.68972042)
+    body = cylinder(0.47403191, through=(0, 0.58487292, 0), axis=axis)
+    feet = [(1.3, 0.10842962), (-1.25966221, 0.07214567), (-0.27848485, -0.23946986)]
+    path = FootPath([(x, way * z) for x, z in (*feet, (-1.3, -0.26385344))], stations=30)
+    case = SpatialCase(Beam(radius=1e-3), body=body, path=path, friction=0.22)
+    kinds = [e["kind"] for e in solve_space(case).provenance["events"]]
+    assert kinds[:2] == ["touch", "release"] and "slip-off" not in kinds
+
+
 def test_once_it_cannot_be_followed_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """It may hold on long after the straight vibrissa is clear of the body, or back again."""
     monkeypatch.setattr(Branch, "after", lambda *_: None)
