@@ -207,9 +207,10 @@ class Branch:
         allowed = 1 if state.contact.force > 0 else _STEEP
         while reach > _SHORTEST:
             found = panel(scene, law, state, reach, before)
-            if found is not None and found.coarse <= allowed:
-                return found if found.rounded < _WHOLLY else None
-            reach *= _SHORTER if found is None else max(_change(found), _SHORTER)
+            known = found is not None and found.rounded < _WHOLLY
+            if found is not None and known and found.coarse <= allowed:
+                return found
+            reach *= max(_change(found), _SHORTER) if found is not None and known else _SHORTER
         return None
 
     def _stretch(self, found: Panel) -> Stretch:
