@@ -85,6 +85,7 @@ class Stretch(NamedTuple):
     end: float  # share of it
     event: str | None  # none at its own end
     last: Sliding  # the state there
+    astray: float  # logarithm of how much another direction of friction has grown up to there
 
     def at(self, travel: float) -> "Held":
         """The state where the foot has come so far."""
@@ -122,8 +123,11 @@ class Branch:
             state = state_of(scene, first.vector, first.contact.tangent)
             found = self._panel(self._leg(travel), state, False, _FIRST, None)
             goes_on = "stick" if self._friction else "slip-off"
-            if found is not None and self._margins(found, 1)[goes_on] > 0:
-                return Held(state, np.zeros(3), self._stretch(found))
+            if found is None or self._margins(found, 1)[goes_on] <= 0:
+                continue
+            if self._friction and np.prod(found.law.beside(scene, found.states[1], found.by)) < 0:
+                continue  # a direction that goes astray from the start
+            return Held(state, np.zeros(3), self._stretch(found))
         return None
 
     def on_from(self, landed: Contact, travel: float) -> Held | None:
@@ -157,14 +161,17 @@ class Branch:
                 return past
         if found and found.law.rubs and self._margins(found, 0)["stick"] < -_STILL:
             found = self._panel(leg, state, True, reach, None)  # the foot has turned
-        if found is None:
-            return None
-        following = self._stretch(found)
-        turns = event is not None or found.law.sticks != done.law.sticks
-        turns &= following.event in ("stick", "slide")
-        if turns and following.last.travel - state.travel <= _AT_ONCE:
-            return None  # it neither sticks nor slides, or rounding alone says which
-        return following
+        for most in _SHORT:
+            if found is None:
+                return None
+            following = self._stretch(found, stretch.astray)
+            turns = event is not None or found.law.sticks != done.law.sticks
+            turns &= following.event in ("stick", "slide")
+            if not turns or following.last.travel - state.travel > _AT_ONCE:
+                return following
+            # It turns before the panel's first point: from where, a shorter one may tell.
+            found = self._panel(leg, state, found.law.sticks, most, None)
+        return None  # it neither sticks nor slides, or rounding alone says which
 
     def _past_edge(self, stretch: Stretch) -> Iterator[Sliding]:
         """The state on the next face or edge, and past a seam of faces that are nearly one."""
@@ -186,7 +193,7 @@ class Branch:
                 found = self._panel(leg, state, law, most, None)
                 known |= found is not None
                 if found is not None and min(self._margins(found, 1).values()) > 0:
-                    return self._stretch(found)
+                    return self._stretch(found, before.astray)
         return before._replace(event="slip-off") if known else None
 
     def _on(self, spot: Spot) -> Scene:
@@ -213,7 +220,7 @@ class Branch:
             reach *= max(_change(found), _SHORTER) if found is not None and known else _SHORTER
         return None
 
-    def _stretch(self, found: Panel) -> Stretch:
+    def _stretch(self, found: Panel, astray: float = 0.0) -> Stretch:
         margins = [self._margins(found, i) for i in range(1, len(POINTS))]
         end, event = 1.0, None
         for kind in margins[0]:
@@ -228,7 +235,8 @@ class Branch:
             share = low if left(low) <= 0 else float(brentq(left, low, high, xtol=_CLOSE))
             if share < end:
                 end, event = share, kind
-        return Stretch(found, end, event, found.states[-1] if event is None else found.at(end))
+        last = found.states[-1] if event is None else found.at(end)
+        return Stretch(found, end, event, last, found.astray(astray, end))
 
     def _margins(self, found: Panel, i: int) -> dict[str, float]:
         return self._margin(found, float(POINTS[i]), found.states[i])

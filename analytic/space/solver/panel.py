@@ -45,6 +45,8 @@ _GUESSED = 1e-5  # the same without friction, where a state needs no other one
 _NEARLY = 1e-9  # of such a state's equations
 _UP_TO_RELEASE = 0.999  # of the way to where a tip, that a body can only push, is straight
 _SHARE = 1e-15  # of a panel, to which a place on it is enclosed
+_ELSEWHERE = 1e-6  # rad, of friction's direction
+_GONE = 16.0  # e-folds: rounding of 1e-16 of friction's direction is 1e-9, and goes on growing
 _AT_REST = 1e-15  # of the equations, by the extent
 
 
@@ -56,6 +58,10 @@ def _radau() -> Floats:
 POINTS = _radau()  # shares of a panel: its begin, and Radau's points with its end
 _SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
 _SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
+_SHARES = (np.arange(64) + 0.5) / 64
+_BETWEEN = legendre.legvander(2 * _SHARES - 1, _POINTS - 1) @ np.linalg.inv(
+    legendre.legvander(2 * POINTS[1:] - 1, _POINTS - 1)
+)
 
 
 def _legendre(share: float) -> list[float]:
@@ -109,14 +115,42 @@ class Law(NamedTuple):
     def along_curve(self, state: Sliding) -> Floats:
         """Rates as the foot goes on, shape (8,); at first contact friction keeps its direction."""
         ways = self.ways(state)
-        law = np.zeros((len(ways), 8))
-        if state.contact.force > 0:
-            law[:, :2] = ways @ state.moved
-            law[:, LENGTH] = -(ways @ state.end)
-        else:
+        law = self._slips(state)
+        if state.contact.force == 0:
             law[:, RUB] = ways @ state.sides.T
         found = np.linalg.svd(np.vstack([self.rows(state), law]))[2][-1]
         return np.asarray(found * np.sign(found[TRAVEL]))
+
+    def _slips(self, state: Sliding) -> Floats:
+        """Of rates, how fast it moves along the body where it must not, shape (0 to 2, 8)."""
+        ways = self.ways(state)
+        found = np.zeros((len(ways), 8))
+        found[:, :2] = ways @ state.moved
+        found[:, LENGTH] = -(ways @ state.end)
+        return found
+
+    def beside(self, scene: Scene, state: Sliding, by: Floats) -> tuple[float, float]:
+        """How fast it slips by how far friction points elsewhere, and what turning takes of that.
+
+        Their quotient says how fast such a difference decays along the curve; where it grows, it
+        slides so in no experiment, and but for rounding in no solution.
+        """
+        across = cross(state.contact.spot.normal, state.rub)
+
+        def rates(one: Sliding, ahead: float, turned: float) -> Floats:
+            """At rest, by how fast it goes ahead and friction turns."""
+            turns = np.zeros(8)
+            turns[RUB] = one.sides @ across
+            rows = np.vstack([self.rows(one), grows(one, by), turns])
+            return np.asarray(np.linalg.solve(rows, [*np.zeros(6), ahead, turned]))
+
+        along, aside = changed(state, self.along_curve(state)), rates(state, 0.0, 1.0)
+        turned = float(across @ along[3:6] / (by @ along))
+        step = _ELSEWHERE * self.friction**2
+        vector = state.vector + step * changed(state, aside)
+        near = state_of(scene, vector, state.contact.tangent)
+        slips = float(self._slips(near)[0] @ rates(near, 1.0, turned))
+        return slips / step, float(self._slips(state)[0] @ aside)
 
     def settled(
         self, scene: Scene, near: Sliding, by: Floats, amount: float, enough: float = _AT_REST
@@ -163,6 +197,19 @@ class Panel(NamedTuple):
     def rounded(self) -> float:
         """How wrong the rates are at most by rounding: the last polynomial's at the ends."""
         return _POINTS**2 * _OF_ROUNDING * self.rounding / self.reach
+
+    def astray(self, so_far: float, end: float) -> float:
+        """Logarithm of how much another direction of friction has grown, up to a share of it."""
+        if not self.law.rubs:
+            return 0.0
+        beside = [self.law.beside(self.scene, state, self.by) for state in self.states[1:]]
+        slips, turning = (_BETWEEN @ beside).T
+        within = (POINTS[1] < _SHARES) & (end > _SHARES)  # at first contact it is steep before
+        for decays in (slips / turning)[within] * self.reach / len(_SHARES):
+            so_far = max(0.0, so_far - decays)
+            if so_far > _GONE:
+                return np.inf  # elsewhere it does not come back
+        return so_far
 
     def share_at(self, travel: float, last: float) -> float:
         """Where the foot has come so far; it goes on until the last share, at least."""

@@ -88,7 +88,7 @@ class Walk:
         stretch = held.stretch
         while stretch.last.travel < to:
             following = self._branch.after(stretch)
-            if following is None:
+            if following is None or following.astray == np.inf:
                 at, last = stretch.last.travel, stretch.last
                 if stretch.event not in LAST and last.contact.force < _FAINT and self._leaves(at):
                     stretch = stretch._replace(event="release")

@@ -336,6 +336,30 @@ def test_next_to_release_rounding_makes_no_events(way: int) -> None:
     assert kinds[:2] == ["touch", "release"] and "slip-off" not in kinds
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_where_friction_goes_astray_nothing_is_known(way: int) -> None:
+    """Rounding grew by e^2000 along it: mirror images ended by slip-offs at different places."""
+    body = prism(circle(0.37, (0, 0.512)), (-0.814, 0.012, way * 0.58))
+    feet = [(1.3, way * -0.098), (-0.927, way * -0.085)]
+    path = FootPath(feet, tangent=(-0.096, 1.0, way * -0.128), stations=20)
+    readings = _swept(body, path, 0.5)
+    assert set(readings.table["status"]) == {"ok", "diverged"}
+    assert readings.table["status"].iloc[-1] == "diverged"
+    assert [event["kind"] for event in readings.provenance["events"]] == ["touch"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_stick_that_ends_before_a_panels_first_point_is_followed(way: int) -> None:
+    """Its margin was 0 there but for rounding, and so one mirror image was lost at a corner."""
+    body = prism(circle(0.21, (0, 0.631)), (0.869, 0.216, way * 0.446))
+    feet = [(1.3, 0.065), (-0.195, -0.239), (0.157, -0.111)]
+    path = FootPath([(x, way * z) for x, z in feet], tangent=(0.027, 1, way * 0.019), stations=20)
+    readings = _swept(body, path, 0.002)
+    assert set(readings.table["status"]) == {"ok"}
+    assert "slide" in [event["kind"] for event in readings.provenance["events"]]
+
+
 def test_once_it_cannot_be_followed_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """It may hold on long after the straight vibrissa is clear of the body, or back again."""
     monkeypatch.setattr(Branch, "after", lambda *_: None)
