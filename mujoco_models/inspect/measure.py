@@ -27,7 +27,7 @@ from mujoco_models.inspect.hand import measure_hand, on_weld
 from mujoco_models.inspect.held import BEYOND, lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
-from mujoco_models.inspect.load import load
+from mujoco_models.inspect.load import load, spec_of
 from mujoco_models.inspect.measured import Joint, MeasuredBeam
 from mujoco_models.inspect.parts import Names, Parts, find, masses_of
 from mujoco_models.inspect.probe import probe_of
@@ -40,6 +40,7 @@ from mujoco_models.inspect.touching import (
     thickness,
     touching,
 )
+from mujoco_models.inspect.unsolved import unsolved
 from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
@@ -63,14 +64,16 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
     """Load a model, find its vibrissa, and measure it."""
     model = load(path, names.site)
     with unlogged(), threadpool_limits(1):  # the matrices are small
-        return measure(model, find(model, names), path)
+        return measure(model, find(model, names), path, names.site)
 
 
 def hold(model: mujoco.MjModel, parts: Parts) -> Held:
     return HeldChain(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
-def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
+def measure(
+    model: mujoco.MjModel, parts: Parts, path: Path, site: str | None = None
+) -> MeasuredBeam:
     """Measure the vibrissa of a model.
 
     All of it is MuJoCo's: the foot is held, loads are put on the tip, and Newton's method finds the
@@ -104,10 +107,10 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         )  # fmt: skip
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = readings_of(welded or held, axes, tip_rigidity, length)
-    probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
+    thick = thickness(model, parts)
+    probe, unit = probe_of(path, thick), tip_rigidity / length**2
     loads, bent, in_the_way = _bent(held, model, axes, unit)
     sag, weight = _sag(held, axes)
-    mass = float(model.body_mass[list(parts.chain)].sum())
     drive = drive_of(model, parts.foot, -axes[0])
     whole = np.diag(squares), np.diag(damping), np.eye(len(squares))
     if chain:
@@ -137,9 +140,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, *whole),
-        tolerance=float(model.opt.tolerance),
-        undone=_undone(model) * period**4 / (mass * length**2),
-        conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
+        unsolved=unsolved(spec_of(path, site), parts, (nodes, axes), thick, tip_rigidity, period),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
@@ -356,11 +357,6 @@ def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:
     found = [(name, "enable") for name, bit in disabled.items() if model.opt.disableflags & bit]
     overrides = model.opt.enableflags & on.mjENBL_OVERRIDE
     return (*found, *([("override", "disable")] if overrides else []))
-
-
-def _undone(model: mujoco.MjModel) -> float:
-    """What MuJoCo's solver takes for nothing: half of inertia times acceleration squared."""
-    return float(model.opt.tolerance * model.stat.meaninertia * max(1, model.nv))
 
 
 def _stable_step(

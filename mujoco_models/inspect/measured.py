@@ -144,13 +144,9 @@ class MeasuredBeam(Shown):
         The first of free vibration along the sweep [time].
     stable_step : float
         The longest stable time step of an integrator that is explicit in springs [time].
-    tolerance : float
-        Of MuJoCo's solver.
-    undone : float
-        Up to how much MuJoCo's solver may stop short, over mass (length / period^2)^2 and length^2:
-        its tolerance counts in the mean inertia of the whole model and in all its coordinates.
-    conjugate : bool
-        Whether that solver is CG, which stops shorter than Newton.
+    unsolved : float
+        By how much the sensors read otherwise, past an object, with MuJoCo's solver as it is than
+        with one that goes on to the end, relative to the largest.
     damping_ratio : float
         Of the first vibration.
     medium : tuple of float
@@ -210,9 +206,7 @@ class MeasuredBeam(Shown):
     period: float
     period_without_armature: float
     stable_step: float
-    tolerance: float
-    undone: float
-    conjugate: bool
+    unsolved: float
     damping_ratio: float
     medium: tuple[float, float, float]
     gravity: tuple[float, float, float]
