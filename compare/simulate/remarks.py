@@ -8,6 +8,7 @@ import numpy as np
 from analytic import Beam
 from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
+from compare.simulate.course import on_course
 from compare.simulate.expected import SPEED
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import EXPLICIT, FORCE, RADIUS, RIGIDITY, Remark
@@ -19,7 +20,6 @@ from compare.simulate.rigidity import (
     by_its_links,
     elastica_error,
     is_cone,
-    is_curved,
     radii,
     smooth_rigidity,
     tapers,
@@ -65,7 +65,8 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
         *_stated(found, stated),
         *(_surface(found) if stated is None else ()),
         *_units(found, stated),
-        *_rest(found, stated),
+        *on_course(found, stated),
+        *_rest(found),
         *_plane(found),
         *on_foot(found),
         *_sensors(found),
@@ -225,18 +226,7 @@ def _units(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
                      "do not fit")  # fmt: skip
 
 
-def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
-    wanted = 0.0
-    if stated is not None:
-        s = np.linspace(0, stated.length, 1001)
-        wanted = float(np.trapezoid(stated.curvature_at(s), s)) / stated.length
-    own, should = (x * found.length for x in (found.natural_curvature, wanted))
-    if stated is None and is_curved(found):
-        yield Remark("note", "natural curvature", f"the tip is turned by {own:.3g} rad at rest, as "
-                     "a curved vibrissa's is")  # fmt: skip
-    elif is_curved(found, wanted):
-        yield Remark("fault", "natural curvature", f"{own:.3g}/L instead of {should:.3g}/L: at "
-                     "rest the tip is turned by so much")  # fmt: skip
+def _rest(found: MeasuredBeam) -> Iterator[Remark]:
     if any(found.medium):
         density, viscosity, wind = found.medium
         yield Remark("note", "medium", f"a density of {density:g}, a viscosity of {viscosity:g} "

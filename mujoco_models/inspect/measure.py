@@ -44,7 +44,8 @@ from mujoco_models.inspect.unsolved import unsolved
 from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
-_LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+# EI/L^2; up to a tip turned by 82 degrees, and so close that one that curves by 2/L comes to rest.
+_LOADS = (0.01, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0)
 _MOST_LOADS = (0.0, *_LOADS, 20.0)  # as the catenary bends it, 6.2/L at the clamp
 _TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _WAY = 2.0  # L; of the foot in it
@@ -135,7 +136,7 @@ def measure(
         stretch=bending.stretch,
         loads=loads,
         bent=bent,
-        straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
+        out_of_plane=float(np.abs((nodes - nodes[0]) @ axes[2]).max()),
         mass=float(masses_of(model, parts.chain).sum()),
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),

@@ -137,8 +137,8 @@ class MeasuredBeam(Shown):
         Forces on the tip across the beam [force].
     bent : array, shape (n, 2)
         How far the tip moves along them, and along the beam towards the clamp [length].
-    straightness : float
-        Largest distance of joints and tip from the straight line through the clamp [length].
+    out_of_plane : float
+        Largest distance of joints and tip from the plane in which it bends [length].
     mass : float
     period, period_without_armature : float
         The first of free vibration along the sweep [time].
@@ -201,7 +201,7 @@ class MeasuredBeam(Shown):
     stretch: float
     loads: Floats
     bent: Floats
-    straightness: float
+    out_of_plane: float
     mass: float
     period: float
     period_without_armature: float
