@@ -8,7 +8,7 @@ import numpy as np
 from analytic import Beam
 from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
-from compare.simulate.course import on_course
+from compare.simulate.course import LEANS, on_course, on_plane
 from compare.simulate.expected import SPEED
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import EXPLICIT, FORCE, RADIUS, RIGIDITY, Remark
@@ -33,8 +33,6 @@ from mujoco_models.inspect.unsolved import STRICT
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _LENGTH = 0.005  # relative; forces go with 1/L^2
 _JOINT = 0.05  # relative; one of twenty that is so far off moves readings by 0.25 per cent
-# GJ/EI; a cable of ten links is 0.6 per cent off at 2, 0.9 at 0.3, 2.6 at 0.1 and 48 at 0.012.
-_TORSION = 0.2
 _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
 _LEVER = 5e-3  # L; of the force's moment
 _LATE = 5e-3  # L; of the foot, as 0.1 T1 at 0.05 L/T1
@@ -67,7 +65,7 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
         *_units(found, stated),
         *on_course(found, stated),
         *_rest(found),
-        *_plane(found),
+        *on_plane(found),
         *on_foot(found),
         *_sensors(found),
         *_flags(found),
@@ -101,7 +99,7 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
                      f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
-    if abs(off) <= RIGIDITY and error > _ELASTICA:
+    if abs(off) <= RIGIDITY and error > _ELASTICA and found.lean <= LEANS:
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
                      "cantilever", "take more links")  # fmt: skip
     yield from _beyond_springs(found)
@@ -244,20 +242,6 @@ def _rest(found: MeasuredBeam) -> Iterator[Remark]:
                      edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
 
 
-def _plane(found: MeasuredBeam) -> Iterator[Remark]:
-    if not found.planar:
-        yield Remark(
-            "note", "plane", "nothing keeps it in the plane of the sweep: where an object without "
-            "friction recedes, it slips off sideways before it would let go"
-        )  # fmt: skip
-    if found.torsion < _TORSION:
-        yield Remark(
-            "fault", "torsion", f"it twists {1 / found.torsion:.2g} times as easily as it bends, "
-            "and leaves the plane of the sweep; a round rod of any material has 1 to 1.5",
-            f"make what resists the twist {0.8 / found.torsion:.2g} times as stiff"
-        )  # fmt: skip
-
-
 def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
     for word, sensor in (("force", found.force), ("torque", found.torque)):
         if sensor is None:
@@ -290,7 +274,7 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
                          "it as the vibrissa bends", "put its site on the body that holds the first"
                          " joint", treatment.before_joints(found, sensor))  # fmt: skip
             continue
-        yield from _axes(word, sensor)
+        yield from _axes(word, sensor, found)
         most = FORCE * as_intended(found) / found.length ** (2 if word == "force" else 1)
         if sensor.cutoff < 2 * most:
             yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
@@ -315,7 +299,7 @@ def _silent(sensor: Sensed) -> bool:
     return bool(np.abs(sensor.axes).max() < _READS)
 
 
-def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
+def _axes(word: str, sensor: Sensed, found: MeasuredBeam) -> Iterator[Remark]:
     axes = sensor.axes
     if np.abs(axes @ axes.T - np.eye(3)).max() > 1e-2:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} does not read the whole {word} "
@@ -324,7 +308,14 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
     nearest = nearest_axes(axes)
     rotation = axes.T @ nearest
     angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
-    if angle > _ROTATED:
+    with_rail = (
+        found.rail is not None
+        and abs(found.rail.way[2]) > np.sin(_ROTATED)
+        and all(
+            np.abs(axes @ way).max() > np.cos(_ROTATED) for way in (found.rail.way, (0.0, 1.0, 0.0))
+        )
+    )  # it is the hinges that are turned
+    if angle > _ROTATED and not with_rail:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is turned by "
                      f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep",
                      edits=treatment.straightened(sensor))  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.numerics.arrays import Floats
 from analytic.problem.shown import Shown
-from mujoco_models.inspect.drive import Reach
+from mujoco_models.inspect.drive import Rail, Reach
 from mujoco_models.inspect.hand import Hand
 from mujoco_models.motion import ConeKind, IntegratorKind
 
@@ -114,6 +114,8 @@ class MeasuredBeam(Shown):
         What bends it: ``"joints"``, ``"plugin"`` or ``"flex"``.
     drive : str or None
         What can move the foot; None if nothing can.
+    rail : Rail or None
+        The slide that moves the foot, or the nearest to that; None if it has no slide.
     reach : Reach or None
         What limits a slide that moves the foot; None of another drive.
     switched : tuple of (str, str)
@@ -161,6 +163,8 @@ class MeasuredBeam(Shown):
         The sensors at the clamp.
     planar : bool
         Whether its joints keep it in the plane of the sweep.
+    lean : float
+        From across the vibrissa, of the axes of hinges that are all alike [rad].
     torsion : float
         Its torsional over its flexural rigidity, as the tip feels both; infinite if it cannot
         twist.
@@ -190,6 +194,7 @@ class MeasuredBeam(Shown):
     frame: Floats
     springs: Literal["joints", "plugin", "flex"]
     drive: str | None
+    rail: Rail | None
     reach: Reach | None
     switched: tuple[tuple[str, str], ...]
     objects: tuple[str, ...]
@@ -215,6 +220,7 @@ class MeasuredBeam(Shown):
     force: Sensed | None
     torque: Sensed | None
     planar: bool
+    lean: float
     torsion: float
     self_contacts: tuple[str, ...]
     in_the_way: tuple[int, ...]

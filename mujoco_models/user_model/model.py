@@ -10,9 +10,9 @@ from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
+from mujoco_models.inspect.axes import sweep_axes
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import spec_of
-from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.inspect.moved import drive_to
 from mujoco_models.inspect.sensors import Held

@@ -62,6 +62,37 @@ def test_a_vibrissa_out_of_its_plane_is_named(tmp_path):
     assert "0.078 L off the plane" in said.text
 
 
+@pytest.mark.parametrize(("axis", "said"), [("0 0.1 1", None), ("0 0.4 1", "lean 22 degrees")])
+def test_hinges_that_lean_along_it_are_named(tmp_path, axis, said):
+    path = OnRail().write(tmp_path, ('<joint axis="0 0 1"', f'<joint axis="{axis}"'))
+    faults = Inspection(inspect_model(path)).faults
+    assert [fault.subject for fault in faults] == ([] if said is None else ["plane"])
+    assert all(said in fault.text for fault in faults)
+
+
+@pytest.mark.parametrize("degrees", [1, 5, 20, 60])
+def test_hinges_that_are_turned_about_it_are_no_fault_of_slide_or_sensors(tmp_path, degrees):
+    """They bend it out of the plane in which slide and sensors are."""
+    turn = np.deg2rad(degrees)
+    axis = f"{np.sin(turn)} 0 {np.cos(turn)}"
+    path = OnRail().write(tmp_path, ('<joint axis="0 0 1"', f'<joint axis="{axis}"'))
+    (said,) = Inspection(inspect_model(path)).faults
+    assert f"{degrees} degrees out of the plane in which the vibrissa bends ('rail')" in said.text
+    assert "axes of the vibrissa's joints" in said.remedy
+    assert not said.edits
+
+
+@pytest.mark.parametrize(
+    ("way", "degrees"), [("1 0.1 0", "5.7"), ("-1 0.3 0", "17"), ("0.1 1 0", "84"), ("0 1 0", "90")]
+)
+def test_a_slide_that_leans_is_named_by_its_own_name(tmp_path, way, degrees):
+    """By more than 2.5 degrees nothing could move the foot, it was said, and its clamp gave way."""
+    path = OnRail().write(tmp_path, ('type="slide" axis="1 0 0"', f'type="slide" axis="{way}"'))
+    (said,) = Inspection(inspect_model(path)).faults
+    assert f"its slide is {degrees} degrees from across the vibrissa" in said.text
+    assert "('rail')" in said.text
+
+
 @pytest.mark.parametrize("turn", [lambda s: s, lambda s: s - 0.5, lambda s: 2 * s**2])
 def test_a_smooth_course_is_sound_and_its_case_has_it(tmp_path, turn):
     """Of curvatures as others measure them: none at the clamp, or an S."""
