@@ -42,11 +42,16 @@ def curved(folder, turn, links=20):
 @pytest.mark.parametrize("aside", [3e-3, -3e-3, 0.01, 0.02])
 @pytest.mark.parametrize("at", [0.2, 0.5, 1.0])
 def test_a_body_that_is_stepped_aside_is_named(tmp_path, links, aside, at):
-    """At 3e-3 L, readings are 0.9 per cent off, at 0.01 L 3."""
+    """At 3e-3 L, readings are 0.9 per cent off, at 0.01 L 3.
+
+    By most of a link's length it makes that link longer, too, and with it the vibrissa.
+    """
     link = round(at * links)
-    (said,) = Inspection(inspect_model(stepped(tmp_path, link, aside, links=links)), STATED).faults
-    assert said.subject == "centreline"
-    assert f"by {abs(aside):.1e} L, most at 'whisker{link}'" in said.text
+    found = Inspection(inspect_model(stepped(tmp_path, link, aside, links=links)), STATED)
+    said = next(fault for fault in found.faults if fault.subject == "centreline")
+    assert float(re.findall(r"by (\S+) L", said.text)[0]) == pytest.approx(abs(aside), rel=0.06)
+    assert f"most at 'whisker{link}'" in said.text
+    assert abs(aside) * links > 0.5 or found.faults == (said,)
 
 
 def test_a_step_along_the_hinges_bends_as_a_straight_vibrissa(tmp_path):
