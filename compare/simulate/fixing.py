@@ -1,6 +1,6 @@
 """A model's faults fixed in a copy of its file, and the case that the copy is a model of."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -9,13 +9,13 @@ import numpy as np
 
 from analytic import Beam, Case, InputError, circle, solve_sweep
 from compare.judge.rate import Rate
+from compare.simulate.course import curvature
 from compare.simulate.expected import SPEED, expected, hurry
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import (
     as_intended,
     clamp_stiffness,
     is_cone,
-    is_curved,
     radii,
     smooth_rigidity,
     tapers,
@@ -108,7 +108,7 @@ def stop_of(found: MeasuredBeam) -> float | None:
             length=length,
             flexural_rigidity=pairs if tapers(found) else rigidity,
             radius=radii(found)[0],
-            natural_curvature=found.natural_curvature if is_curved(found) else 0.0,
+            natural_curvature=curvature(found, _STATIONS),
         ),
         circle(_CIRCLE * length, (0.0, HEIGHT * length)),
         clamp_stiffness=clamp_stiffness(found) * rigidity / length,
@@ -130,14 +130,13 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
     along = f"{smooth_rigidity(found, np.zeros(1))[0] if tip != radius else rigidity:.6g}"
     if not is_cone(found):
         s = np.linspace(0, length, _STATIONS)
-        pairs = zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True)
-        along = f"[{', '.join(f'[{at:.6g}, {ei:.6g}]' for at, ei in pairs)}]"
+        along = _written(zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True))
     lines = [f"{CASE_MARK} of {file.name}", "[beam]", f"length = {length:.6g}",
              f"flexural_rigidity = {along}", f"radius = {radius:.6g}"]  # fmt: skip
     if tip != radius:
         lines.append(f"tip_radius = {tip:.6g}")
-    if is_curved(found):
-        lines.append(f"natural_curvature = {found.natural_curvature:.6g}")
+    if curved := curvature(found, _STATIONS):
+        lines.append(f"natural_curvature = {_written(curved)}")
     stiffness = clamp_stiffness(found)
     if np.isfinite(stiffness):
         lines += ["[support]", f"rotational_stiffness = {stiffness * rigidity / length:.6g}"]
@@ -152,6 +151,13 @@ def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> st
     lines += ["[motion]", f"speed = {SPEED}"]
     lines += ["[tolerances]", *_tolerances(found)]
     return "\n".join(lines) + "\n"
+
+
+def _written(values: float | Iterable[tuple[float, float]]) -> str:
+    """A number, or pairs along the vibrissa, as a case file has them."""
+    if isinstance(values, float):
+        return f"{values:.6g}"
+    return f"[{', '.join(f'[{at:.6g}, {value:.6g}]' for at, value in values)}]"
 
 
 def _tolerances(found: MeasuredBeam) -> Iterator[str]:

@@ -12,6 +12,7 @@ from mujoco_models.inspect.ahead import WAY
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _LEANS = 1e-3  # rad, beside how a curved one turns in a cell; by 1 degree readings are 6 % off
+_ALONG = 0.99  # cosine, of a slide that goes along the vibrissa
 _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _LEAPS = 0.01  # of the way; by so much a servo leaps as contact ends: by 0.02 it was 0.04 L late
 _SLOWED = 0.45  # of its speed; a sweep ends where it is half of its way behind
@@ -36,19 +37,23 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
                      "weld it to a mocap body, or take its free joint away")  # fmt: skip
         return
     yield from _hand(found)
+    astray = tuple(_astray(found))
+    yield from astray
     yield from _reach(found)
     yield from _swing(found)
     if found.drive is None and found.objects:
         shown = ", ".join(map(repr, found.objects[:4]))
         yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
-    elif found.drive is None:
+    elif found.drive is None and not astray:
         yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "give it a slide joint "
                      "across the vibrissa",
                      on_rail(found) if found.hand is None else ())  # fmt: skip
-    elif "which is a force" in found.drive:
+    elif found.drive is not None and "which is a force" in found.drive:
         yield Remark("fault", "foot", f"{found.drive}: nothing holds its speed",
                      "take a position or velocity actuator")  # fmt: skip
-    elif found.drive.startswith("mocap"):  # what is welded to one has a speed
+    elif found.drive is not None and found.drive.startswith(
+        "mocap"
+    ):  # what is welded to one has a speed
         rubs = any(geom.meets and geom.friction for geom in found.geoms)
         said = (
             "friction does not see it move, and holds what should slide" if rubs else
@@ -76,16 +81,30 @@ def _hand(found: MeasuredBeam) -> Iterator[Remark]:
                      edits=held(found))  # fmt: skip
 
 
+def _astray(found: MeasuredBeam) -> Iterator[Remark]:
+    """A slide that does not go across the vibrissa in the plane in which that bends."""
+    if found.rail is None or (found.drive is None and found.objects):
+        return
+    x, y, z = (abs(float(part)) for part in found.rail.way)
+    allowed = _LEANS + abs(found.natural_curvature) * found.joints[0].cell
+    for leans, what, remedy in (
+        (math.asin(min(y, 1.0)),
+         "from across the vibrissa, which nears the object as it goes along",
+         "turn the slide's axis, or the vibrissa on its foot"),
+        (math.atan2(z, x) if y < _ALONG else 0.0, "out of the plane in which the vibrissa bends",
+         "turn the axes of the vibrissa's joints about it, or the slide's"),
+    ):  # fmt: skip
+        if leans > allowed:
+            yield Remark("fault", "foot", f"its slide is {math.degrees(leans):.2g} degrees {what} "
+                         f"({found.rail.name!r})", remedy)  # fmt: skip
+
+
 def _reach(found: MeasuredBeam) -> Iterator[Remark]:
     """What stops a drive before a sweep is over."""
     reach, length = found.reach, found.length
     if reach is None:
         return
     own = () if reach.actuator is None else (reach.actuator,)
-    if reach.lean > _LEANS + abs(found.natural_curvature) * found.joints[0].cell:
-        yield Remark("fault", "foot", f"its slide is {math.degrees(reach.lean):.2g} degrees from "
-                     "across the vibrissa, which nears the object as it goes along",
-                     "turn the slide's axis, or the vibrissa on its foot")  # fmt: skip
     if reach.way < WAY * length:
         yield Remark("fault", "foot", f"its slide ends {reach.way / length:.2g} L to the left, a "
                      f"sweep takes up to {WAY:g} L",

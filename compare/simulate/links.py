@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import root
 
 from analytic.numerics.arrays import Floats
-from compare.simulate.rigidity import as_intended, is_curved, smooth_rigidity, tapers, tip_of
+from compare.simulate.rigidity import as_intended, is_straight, smooth_rigidity, tapers, tip_of
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _FEWEST = 4  # joints: two of them are ends, and the others have to be alike
@@ -38,7 +38,7 @@ def order_in_links(found: MeasuredBeam) -> OrderInLinks | None:
     or stiffer than the others they are.
     """
     s = np.array([joint.s for joint in found.joints]) / found.length
-    if len(s) < _FEWEST or tapers(found) or is_curved(found):
+    if len(s) < _FEWEST or tapers(found) or not is_straight(found):
         return None
     gaps = np.diff(s)
     link = float(gaps.mean())

@@ -35,11 +35,15 @@ def _root_along(found: MeasuredBeam) -> Floats:
     s = np.array([joint.s for joint in found.joints]) / found.length
     root = np.array([joint.flexural_rigidity for joint in found.joints]) ** 0.25
     inner = slice(1, -1) if len(s) > 4 else slice(None)
-    terms, root = np.vander(s, 3 if len(s) > 6 else 1)[inner], root[inner]
-    weights, most = np.ones(len(root)), root.max()
+    return least_deviations(np.vander(s, 3 if len(s) > 6 else 1)[inner], root[inner])
+
+
+def least_deviations(terms: Floats, values: Floats) -> Floats:
+    """The fit of terms, in columns, with the least sum of deviations."""
+    weights, most = np.ones(len(values)), max(float(np.abs(values).max()), 1e-9)
     for _ in range(50):
-        fit = np.linalg.lstsq(weights[:, None] * terms, weights * root, rcond=None)[0]
-        weights = 1 / np.sqrt(np.maximum(np.abs(root - terms @ fit), 1e-9 * most))
+        fit = np.linalg.lstsq(weights[:, None] * terms, weights * values, rcond=None)[0]
+        weights = 1 / np.sqrt(np.maximum(np.abs(values - terms @ fit), 1e-9 * most))
     return np.asarray(fit)
 
 
@@ -82,7 +86,7 @@ def _of_tip(s: Floats, rigidity: Floats) -> float:
 
 def elastica_error(found: MeasuredBeam) -> float:
     """How far the tip is from the exact cantilever's of the same small deflection, at most [L]."""
-    if tapers(found) or is_curved(found):
+    if tapers(found) or not is_straight(found):
         return float("nan")
     exact = tip_of(found.loads * found.length**2 / found.tip_rigidity)
     return float(np.linalg.norm(found.bent / found.length - exact, axis=1).max())
@@ -189,6 +193,14 @@ def is_curved(found: MeasuredBeam, stated: float = 0.0) -> bool:
     pieces = found.joints[0].s + found.length - found.joints[-1].s
     allowed = _CURVATURE + abs(stated) * pieces / 2
     return abs(found.natural_curvature - stated) * found.length > allowed
+
+
+def is_straight(found: MeasuredBeam) -> bool:
+    """Whether it is straight at rest, all along."""
+    slopes = np.cumsum([joint.angle for joint in found.joints])
+    links = np.diff([joint.s for joint in found.joints], append=found.length)
+    aside = np.abs(np.cumsum(links * np.sin(slopes))).max()
+    return not is_curved(found) and bool(aside < _CURVATURE / 2 * found.length)
 
 
 def tip_of(loads: Floats) -> Floats:

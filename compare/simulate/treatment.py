@@ -45,11 +45,6 @@ def steps(found: MeasuredBeam) -> tuple[Edit, ...]:
     return (Edit("option", (("timestep", number(timestep(found))), ("integrator", "discrete"))),)
 
 
-def solved(found: MeasuredBeam, undone: float) -> tuple[Edit, ...]:
-    """A tolerance of MuJoCo's solver that leaves no more than that undone."""
-    return (Edit("option", (("tolerance", number(found.tolerance * undone / found.undone)),)),)
-
-
 def hardest(found: MeasuredBeam) -> str:
     """The solref of a constraint that is as hard as the time step allows."""
     return f"{number(2 * timestep(found))} 1"

@@ -43,7 +43,15 @@ class Reach:
     inertia: float  # of all that it moves
     gain: float = 0.0  # of an actuator: its force for a length behind, or for a speed
     by_place: bool = False
-    lean: float = 0.0  # of its way from across the vibrissa [rad]
+
+
+@dataclass(frozen=True, eq=False)
+class Rail:
+    """A slide of the foot."""
+
+    joint: int
+    name: str
+    way: Floats  # its direction, of the world or, in a measured beam, of the sweep
 
 
 def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Reach | None:
@@ -55,7 +63,6 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     sense = float(np.sign(data.xaxis[joint] @ left))
-    lean = float(np.arcsin(np.linalg.norm(np.cross(data.xaxis[joint], left))))
     spring = float(model.jnt_stiffness[joint])
     start = float(model.qpos0[model.jnt_qposadr[joint]])
     dof, inf = model.jnt_dofadr[[joint]], math.inf
@@ -70,7 +77,7 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
 
     way = ahead(bool(model.jnt_limited[joint]), model.jnt_range[joint], start)
     if actuator is None or model.actuator_biastype[actuator] != _FOLLOWS:
-        return Reach(joint, actuator, way, inf, inf, inf, inf, True, spring, *held, lean=lean)
+        return Reach(joint, actuator, way, inf, inf, inf, inf, True, spring, *held)
     by_place = model.actuator_biasprm[actuator, 1] != 0
     gear = float(model.actuator_gear[actuator, 0])
     given = model.actuator_ctrlrange[actuator] / gear
@@ -96,7 +103,6 @@ def reach_of(model: mujoco.MjModel, foot: int, left: Floats, speed: float) -> Re
         inertia=held[2],
         gain=-float(model.actuator_biasprm[actuator, 1 if by_place else 2]) * gear**2,
         by_place=bool(by_place),
-        lean=lean,
     )
 
 
@@ -119,6 +125,19 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
                     return found
                 passive = passive or found
     return passive
+
+
+def rail_of(model: mujoco.MjModel, foot: int, left: Floats) -> Rail | None:
+    """The slide that moves a body, or, if nothing does, the one that is nearest to doing so."""
+    mover, data = mover_of(model, foot, left), mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    joint = mover.joint if mover is not None and mover.mocap is None else None
+    if mover is None:
+        ways = {one: abs(float(data.xaxis[one] @ left)) for one in slides(model, foot)}
+        joint = max(ways, key=ways.__getitem__, default=None)
+    if joint is None:
+        return None
+    return Rail(joint, name_of(model.joint(joint), "joint"), np.array(data.xaxis[joint]))
 
 
 def slides(model: mujoco.MjModel, foot: int) -> Iterator[int]:

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from analytic.numerics.arrays import Floats, Integers
-from mujoco_models.inspect.drive import holders, joints_of, mover_of, welds_of
+from mujoco_models.inspect.drive import holders, joints_of, rail_of, welds_of
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.parts import Parts
 
@@ -35,8 +35,8 @@ class Hand:
 
 def joints_of_hand(model: mujoco.MjModel, parts: Parts, left: Floats) -> list[int]:
     """The joints between drive and vibrissa."""
-    mover = mover_of(model, parts.foot, left)
-    drive = mover.joint if mover is not None and mover.mocap is None else None
+    rail = rail_of(model, parts.foot, left)
+    drive = None if rail is None else rail.joint
     bodies = holders(model, parts.foot)
     return [j for body in bodies for j in joints_of(model, body) if j != drive]
 

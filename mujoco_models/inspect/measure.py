@@ -1,6 +1,7 @@
 """Measure the beam that a user's model is: stiffness, mass, clamp, sensors, contacts."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, cast
 
@@ -11,6 +12,7 @@ from threadpoolctl import threadpool_limits
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.ahead import ahead, on_its_way
+from mujoco_models.inspect.axes import is_planar, lean_of, sweep_axes
 from mujoco_models.inspect.beside import check_constraints, check_tendons
 from mujoco_models.inspect.drive import (
     damping_at,
@@ -20,14 +22,14 @@ from mujoco_models.inspect.drive import (
     joints_of,
     movable,
     name_of,
+    rail_of,
     reach_of,
-    slides,
 )
 from mujoco_models.inspect.hand import measure_hand, on_weld
 from mujoco_models.inspect.held import BEYOND, lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
-from mujoco_models.inspect.load import load
+from mujoco_models.inspect.load import load, spec_of
 from mujoco_models.inspect.measured import Joint, MeasuredBeam
 from mujoco_models.inspect.parts import Names, Parts, find, masses_of
 from mujoco_models.inspect.probe import probe_of
@@ -40,37 +42,38 @@ from mujoco_models.inspect.touching import (
     thickness,
     touching,
 )
+from mujoco_models.inspect.unsolved import unsolved
 from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
 
-_LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+# EI/L^2; up to a tip turned by 82 degrees, and so close that one that curves by 2/L comes to rest.
+_LOADS = (0.01, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0)
 _MOST_LOADS = (0.0, *_LOADS, 20.0)  # as the catenary bends it, 6.2/L at the clamp
 _TURN, _SWEEP = 5.0, 40.0  # rad and T1; of all joints together in a sweep at 0.05 L/T1
 _WAY = 2.0  # L; of the foot in it
 _PRESSES = 3.0  # EI/L^2; the largest force of it
 _SHARES = (0.01, 0.1, 1.0)  # of gravity
-_ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _TWISTS = 1e-6  # of a bend by as large a moment; what twists less, only rounding twists
 _TINY = 1e-11  # of the longest cell or largest bend; what is less, only rounding has
 _LONGEST = 1e60  # a first period: its fourth power is a number, too
-_WORLD = 0.999999  # cosine; along an axis of the world
 _REAL = 1e-6  # of a root: what is not real is more off it
 _FARTHEST = 3.0  # from zero, of all at which Runge and Kutta's steps do not grow
-_ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
 
 
 def inspect_model(path: Path, names: Names) -> MeasuredBeam:
     """Load a model, find its vibrissa, and measure it."""
     model = load(path, names.site)
     with unlogged(), threadpool_limits(1):  # the matrices are small
-        return measure(model, find(model, names), path)
+        return measure(model, find(model, names), path, names.site)
 
 
 def hold(model: mujoco.MjModel, parts: Parts) -> Held:
     return HeldChain(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
-def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
+def measure(
+    model: mujoco.MjModel, parts: Parts, path: Path, site: str | None = None
+) -> MeasuredBeam:
     """Measure the vibrissa of a model.
 
     All of it is MuJoCo's: the foot is held, loads are put on the tip, and Newton's method finds the
@@ -104,11 +107,12 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         )  # fmt: skip
     welded = on_weld(model, parts, -axes[0]) if chain else None
     force, torque = readings_of(welded or held, axes, tip_rigidity, length)
-    probe, unit = probe_of(path, thickness(model, parts)), tip_rigidity / length**2
+    thick = thickness(model, parts)
+    probe, unit = probe_of(path, thick), tip_rigidity / length**2
     loads, bent, in_the_way = _bent(held, model, axes, unit)
     sag, weight = _sag(held, axes)
-    mass = float(model.body_mass[list(parts.chain)].sum())
     drive = drive_of(model, parts.foot, -axes[0])
+    rail = rail_of(model, parts.foot, -axes[0])
     whole = np.diag(squares), np.diag(damping), np.eye(len(squares))
     if chain:
         beside = np.flatnonzero(~np.isin(model.dof_bodyid, parts.chain))
@@ -121,6 +125,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive,
+        rail=None if rail is None else replace(rail, way=axes @ rail.way),
         reach=reach_of(model, parts.foot, -axes[0], _WAY * length / (_SWEEP * period)),
         switched=_switched(model, tied=welded is not None or not chain),
         objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
@@ -132,14 +137,12 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         stretch=bending.stretch,
         loads=loads,
         bent=bent,
-        straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
+        out_of_plane=float(np.abs((nodes - nodes[0]) @ axes[2]).max()),
         mass=float(masses_of(model, parts.chain).sum()),
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, *whole),
-        tolerance=float(model.opt.tolerance),
-        undone=_undone(model) * period**4 / (mass * length**2),
-        conjugate=bool(model.opt.solver == mujoco.mjtSolver.mjSOL_CG),
+        unsolved=unsolved(spec_of(path, site), parts, (nodes, axes), thick, tip_rigidity, period),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
@@ -147,7 +150,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         weight=weight,
         force=force,
         torque=torque,
-        planar=_planar(held, axes[2]),
+        planar=is_planar(held, axes[2]),
+        lean=lean_of(held, axes[1]),
         torsion=_torsion(held, axes[1], length / float(bending.compliances.sum()), length),
         self_contacts=self_contacts(model, parts),
         in_the_way=tuple(sorted(in_the_way | beside_it(model, parts, held.data, axes, length))),
@@ -170,62 +174,6 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     )
 
 
-def sweep_axes(held: Held) -> Floats:
-    model, data = held.model, held.data
-    nodes = np.vstack([held.clamp, held.joints, held.tip])
-    ways = np.diff(nodes, axis=0)
-    along = next(w for w in ways if np.linalg.norm(w) > 1e-9 * np.linalg.norm(nodes[-1] - nodes[0]))
-    y = along / np.linalg.norm(along)
-    hinges = [
-        data.xaxis[j]
-        for body in held.parts.chain
-        for j in joints_of(model, body)
-        if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE
-    ]
-    planar = len(hinges) == len(held.dofs) and bool(
-        (np.linalg.norm(np.cross(hinges[0], hinges), axis=1) < 1e-6).all()
-    )
-    z = hinges[0] if planar else _normal(held, np.reshape(hinges, (-1, 3)), y)
-    z = _aside(z[None], y)[0]
-    if np.linalg.norm(z) < _ACROSS:
-        raise InputError(
-            "hinges of the vibrissa", "along it", "across it, so that it bends",
-            "turn the axes of its joints",
-        )  # fmt: skip
-    z = z / np.linalg.norm(z)
-    z = z if z[int(np.argmax(np.abs(z)))] > 0 else -z
-    return np.array([np.cross(y, z), y, z])
-
-
-def _normal(held: Held, hinges: Floats, y: Floats) -> Floats:
-    """Of the plane of the sweep where its hinges leave it open: by a slide, a hinge, a sensor."""
-    for joint in slides(held.model, held.parts.foot):
-        way = held.data.xaxis[joint]
-        if abs(way @ y) < _ACROSS:
-            return np.asarray(np.cross(way, y))
-    usual = _across(y)
-    found = hinges[np.abs(hinges @ y) < _ACROSS] if len(hinges) else hinges
-    if not len(found) and np.abs(y).max() < _WORLD:
-        sites = (held.site(s)[1].T for s in (held.parts.force, held.parts.torque) if s is not None)
-        along = ((site, np.abs(site @ y)) for site in sites)
-        found = next((site[on < _ACROSS] for site, on in along if on.max() > 1 - _ACROSS), found)
-    return np.asarray(found[int(np.argmax(np.abs(found @ usual)))]) if len(found) else usual
-
-
-def _across(y: Floats) -> Floats:
-    """An axis of the world that is across the vibrissa: z, or y if it points there."""
-    return np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.5 else np.array([0.0, 1.0, 0.0])
-
-
-def _planar(held: Held, z: Floats) -> bool:
-    """Whether nothing of it can leave the plane of the sweep."""
-    joints = np.flatnonzero(np.isin(held.model.jnt_bodyid, held.parts.chain))
-    kinds, across = held.model.jnt_type[joints], np.abs(held.data.xaxis[joints] @ z)
-    hinges = (kinds == mujoco.mjtJoint.mjJNT_HINGE) & (across > 1 - _ALONG)
-    slides_ = (kinds == mujoco.mjtJoint.mjJNT_SLIDE) & (across < _ALONG)
-    return bool((hinges | slides_).all())
-
-
 def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float:
     """GJ over EI, by the turn of its tip under a moment along it; infinite if it cannot twist."""
     if isinstance(held, HeldRod):  # MuJoCo's flex has no torsion: its vertices do not turn
@@ -233,10 +181,6 @@ def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float
     moment = held.small * rigidity / length * along
     twist = float(held.turn_by(lambda: held.load(np.zeros(3), moment)) @ along) / held.small
     return 1 / twist if twist > _TWISTS else math.inf
-
-
-def _aside(points: Floats, direction: Floats) -> Floats:
-    return np.asarray(points - np.outer(points @ direction, direction))
 
 
 def _joints(
@@ -356,11 +300,6 @@ def _switched(model: mujoco.MjModel, tied: bool) -> tuple[tuple[str, str], ...]:
     found = [(name, "enable") for name, bit in disabled.items() if model.opt.disableflags & bit]
     overrides = model.opt.enableflags & on.mjENBL_OVERRIDE
     return (*found, *([("override", "disable")] if overrides else []))
-
-
-def _undone(model: mujoco.MjModel) -> float:
-    """What MuJoCo's solver takes for nothing: half of inertia times acceleration squared."""
-    return float(model.opt.tolerance * model.stat.meaninertia * max(1, model.nv))
 
 
 def _stable_step(

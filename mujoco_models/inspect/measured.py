@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.numerics.arrays import Floats
 from analytic.problem.shown import Shown
-from mujoco_models.inspect.drive import Reach
+from mujoco_models.inspect.drive import Rail, Reach
 from mujoco_models.inspect.hand import Hand
 from mujoco_models.motion import ConeKind, IntegratorKind
 
@@ -114,6 +114,8 @@ class MeasuredBeam(Shown):
         What bends it: ``"joints"``, ``"plugin"`` or ``"flex"``.
     drive : str or None
         What can move the foot; None if nothing can.
+    rail : Rail or None
+        The slide that moves the foot, or the nearest to that; None if it has no slide.
     reach : Reach or None
         What limits a slide that moves the foot; None of another drive.
     switched : tuple of (str, str)
@@ -137,20 +139,16 @@ class MeasuredBeam(Shown):
         Forces on the tip across the beam [force].
     bent : array, shape (n, 2)
         How far the tip moves along them, and along the beam towards the clamp [length].
-    straightness : float
-        Largest distance of joints and tip from the straight line through the clamp [length].
+    out_of_plane : float
+        Largest distance of joints and tip from the plane in which it bends [length].
     mass : float
     period, period_without_armature : float
         The first of free vibration along the sweep [time].
     stable_step : float
         The longest stable time step of an integrator that is explicit in springs [time].
-    tolerance : float
-        Of MuJoCo's solver.
-    undone : float
-        Up to how much MuJoCo's solver may stop short, over mass (length / period^2)^2 and length^2:
-        its tolerance counts in the mean inertia of the whole model and in all its coordinates.
-    conjugate : bool
-        Whether that solver is CG, which stops shorter than Newton.
+    unsolved : float
+        By how much the sensors read otherwise, past an object, with MuJoCo's solver as it is than
+        with one that goes on to the end, relative to the largest.
     damping_ratio : float
         Of the first vibration.
     medium : tuple of float
@@ -165,6 +163,8 @@ class MeasuredBeam(Shown):
         The sensors at the clamp.
     planar : bool
         Whether its joints keep it in the plane of the sweep.
+    lean : float
+        From across the vibrissa, of the axes of hinges that are all alike [rad].
     torsion : float
         Its torsional over its flexural rigidity, as the tip feels both; infinite if it cannot
         twist.
@@ -194,6 +194,7 @@ class MeasuredBeam(Shown):
     frame: Floats
     springs: Literal["joints", "plugin", "flex"]
     drive: str | None
+    rail: Rail | None
     reach: Reach | None
     switched: tuple[tuple[str, str], ...]
     objects: tuple[str, ...]
@@ -205,14 +206,12 @@ class MeasuredBeam(Shown):
     stretch: float
     loads: Floats
     bent: Floats
-    straightness: float
+    out_of_plane: float
     mass: float
     period: float
     period_without_armature: float
     stable_step: float
-    tolerance: float
-    undone: float
-    conjugate: bool
+    unsolved: float
     damping_ratio: float
     medium: tuple[float, float, float]
     gravity: tuple[float, float, float]
@@ -221,6 +220,7 @@ class MeasuredBeam(Shown):
     force: Sensed | None
     torque: Sensed | None
     planar: bool
+    lean: float
     torsion: float
     self_contacts: tuple[str, ...]
     in_the_way: tuple[int, ...]

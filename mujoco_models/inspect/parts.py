@@ -230,7 +230,9 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
             continue
         off = axis_of(model, geom) - origin
         aside = off - np.outer(off @ direction, direction)
-        if np.abs(aside).max() < _ALIGNED * length:
+        ends, along = np.linalg.norm(off, axis=1), np.ptp(off @ direction)
+        leads_there = ends.min() < _ALIGNED * length and along > _GOES_ON * np.ptp(ends)
+        if leads_there or np.abs(aside).max() < _ALIGNED * length:
             rigid.append(geom)
     return rigid + found
 

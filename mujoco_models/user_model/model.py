@@ -10,10 +10,11 @@ from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
+from mujoco_models.inspect.axes import sweep_axes
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import spec_of
-from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.inspect.moved import drive_to
 from mujoco_models.inspect.sensors import Held
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
@@ -22,7 +23,6 @@ from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM
-from mujoco_models.user_model.drive import drive_to
 from mujoco_models.user_model.names import OwnModel
 from mujoco_models.user_model.skin import Edges, Links
 

@@ -39,7 +39,7 @@ def run_user_model(
     model = load(own.file, own.site)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms, own.site))
     with unlogged(), threadpool_limits(1):
-        measured = measure(model, parts, own.file)
+        measured = measure(model, parts, own.file, own.site)
         held = hold(model, parts)
         held.unload()
     case.require_upright("a model of your own, whose clamp stands as it does,")

@@ -66,6 +66,7 @@ class Model:
     limit: str = ""
     loss: float = 0.0  # friction of a joint [EI/L]
     flag: str = ""
+    solver: str = ""
     rail: str = ""  # of the slide
     motor: str = ""
     sensors: tuple[str, ...] = ("force", "torque")
@@ -117,8 +118,8 @@ class Model:
         return (
             f'<mujoco model="foreign">\n<compiler angle="radian" boundinertia="1.1e-15"/>\n'
             f'<option timestep="{self.timestep * t1:.8g}" integrator="{self.integrator}" '
-            f'gravity="{pull:.8g} 0 0"><flag {self.flag}/></option>\n<default><geom type="capsule" '
-            f'size="{0.005 * self.length:.8g}" {self.contact} '
+            f'{self.solver} gravity="{pull:.8g} 0 0"><flag {self.flag}/></option>\n'
+            f'<default><geom type="capsule" size="{0.005 * self.length:.8g}" {self.contact} '
             f'solref="{self.solref * self.timestep * t1:.8g} 1"/></default>\n'
             f"<worldbody>{self._carried(inside)}</worldbody>\n<sensor>{sensors}</sensor>\n"
             f"{self._beside()}</mujoco>"
@@ -216,6 +217,7 @@ MISTAKES: dict[str, Callable[[Model], None]] = {
     "limits": _changed(limit='limited="true" range="-0.01 0.01"'),
     "friction in joints": _changed(loss=0.3),
     "damping": _changed(damping=0.8),
+    "solver": _changed(solver='solver="CG" iterations="1" tolerance="1e-2"'),
     "force sensor, turned": _changed(site='euler="0 0 0.2"'),
     "force sensor, none": _changed(sensors=()),
     "gravity": _changed(weight=0.1),
@@ -337,11 +339,12 @@ def _hidden(model: Model) -> set[str]:
     if "damping" in model.planted or model.odd >= model.links:
         hidden |= {"damping", "uniformity"}
     if model.carrier == "weld":
-        hidden |= {"force sensor", "foot"}
+        hidden |= {"force sensor", "foot", "solver"}
     if model.links > _MANY:  # of so light ones limits give way by more than a sweep bends them
         hidden |= {"limits"}
+    hidden |= {"solver"} if re.search("contact|step|none|weak", str(model.planted)) else set()
     if "flags, constraint" in model.planted:
-        hidden |= {"contact", "time step", "limits", "friction in joints"}
+        hidden |= {"solver", "contact", "time step", "limits", "friction in joints"}
     return hidden
 
 

@@ -9,7 +9,7 @@ import pytest
 from analytic import InputError
 from mujoco_models import available_beams, inspect_model, shipped_models
 from mujoco_models.quiet import unlogged
-from tests.mujoco_models.inspect.chains import Chain
+from tests.mujoco_models.inspect.chains import Chain, OnRail
 
 BENDS = '<joint axis="0 0 1" stiffness="20.0"'
 END = "</mujoco>"
@@ -222,11 +222,19 @@ def test_a_first_piece_without_a_geom_begins_at_the_sensor(tmp_path, behind, beg
     assert found.joints[0].s == pytest.approx(0.025 - begins, abs=1e-12)
 
 
-def test_what_the_solver_leaves_undone_is_counted_in_periods(tmp_path):
-    """In a unit of time of half a period it is 16 times as much of the vibrissa's energy."""
-    slow, fast = (measured(tmp_path, Chain(rigidity=k)) for k in (1.0, 4.0))
-    assert fast.period == pytest.approx(slow.period / 2)
-    assert fast.undone == pytest.approx(slow.undone / 16)
+@pytest.mark.parametrize(
+    ("option", "least", "most"),
+    [
+        ("", 0, 1e-3),
+        ('solver="PGS" iterations="20"', 0, 5e-3),
+        ('solver="Newton" tolerance="1"', 0.01, np.inf),
+        ('solver="CG" iterations="1" tolerance="1e-2"', 0.1, np.inf),
+    ],
+)
+@pytest.mark.parametrize("chain", [OnRail(), Chain()])
+def test_a_solver_that_stops_early_is_seen_past_an_object(tmp_path, chain, option, least, most):
+    path = chain.write(tmp_path, ("<option ", f"<option {option} "))
+    assert least <= inspect_model(path).unsolved <= most
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "Euler, all explicit", "implicitfast", "RK4"])
