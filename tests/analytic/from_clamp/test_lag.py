@@ -1,4 +1,4 @@
-"""Passes both ways: a lag, a length and a moment arm that are off are told apart, or all said."""
+"""Passes both ways: a lag, a length and a moment arm that are off are distinguished, or all said."""
 
 from dataclasses import replace
 
@@ -49,7 +49,7 @@ def test_what_passes_both_ways_show_is_named_alone(noise, cause, true, planted):
 
 
 @pytest.mark.slow
-def test_what_noise_hides_is_not_told_apart():
+def test_what_noise_hides_is_not_distinguished():
     found = lag_between([*passes(1e-2, late=0.001)])
     assert found.way.lowest < 0.001 < found.way.highest
     assert list(found.otherwise) == ["length"]
