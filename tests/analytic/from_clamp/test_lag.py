@@ -1,4 +1,4 @@
-"""Passes both ways: a lag, a length and a moment arm that are off are distinguished, or all said."""
+"""Passes both ways: a lag, a length and a moment arm that are off are one of them, or all said."""
 
 from dataclasses import replace
 
