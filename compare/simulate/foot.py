@@ -11,7 +11,9 @@ from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.ahead import WAY
 from mujoco_models.inspect.measured import MeasuredBeam
 
-_LEANS = 1e-3  # rad, beside how a curved one turns in a cell; by 1 degree readings are 6 % off
+# rad; by 1 degree readings are 6 % off. Beside it, of what a curved one turns by at its first joint
+# a third is between the clamp's tangent and the chord before that joint.
+_LEANS, _CHORD = 1e-3, 0.5
 _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _LEAPS = 0.01  # of the way; by so much a servo leaps as contact ends: by 0.02 it was 0.04 L late
 _SLOWED = 0.45  # of its speed; a sweep ends where it is half of its way behind
@@ -82,7 +84,7 @@ def _reach(found: MeasuredBeam) -> Iterator[Remark]:
     if reach is None:
         return
     own = () if reach.actuator is None else (reach.actuator,)
-    if reach.lean > _LEANS + abs(found.natural_curvature) * found.joints[0].cell:
+    if reach.lean > _LEANS + _CHORD * abs(found.joints[0].angle):
         yield Remark("fault", "foot", f"its slide is {math.degrees(reach.lean):.2g} degrees from "
                      "across the vibrissa, which nears the object as it goes along",
                      "turn the slide's axis, or the vibrissa on its foot")  # fmt: skip
