@@ -72,7 +72,7 @@ def calibrate(
         for one in passes:
             note_rows(one)
         if LAG not in found.found and (said := lag_remembered(passes)) is not None:
-            terminal.print_line(f"{said}: fit lag too")
+            terminal.print_line(f"{said}: fit lag too, or correct the case")
         terminal.show(*calibration_summary(found))
         if not found.explains and (why := doubt_of_case(passes[0], known)) is not None:
             terminal.print_line(str(why))

@@ -157,7 +157,8 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
     """The faults whose signatures the closed form gives, where it can be solved with them."""
     for fault, known in _SOLVED.items():
         stated, unit = _stated(exact, fault)
-        lowest, highest = (known[end] - stated / unit for end in ("least", "most"))
+        least = 0.0 if "below_zero" in known and stated == 0 else known["least"]
+        lowest, highest = least - stated / unit, known["most"] - stated / unit
         if "change" in known:
             lowest, highest = max(lowest, -known["change"]), known["change"]
         if not lowest < highest:
@@ -195,7 +196,8 @@ def _text(exact: Resolved, fault: str, size: float) -> str:
     cells = abs(0.5 / (1 / inverse - 1 / stated_inverse)) if inverse != stated_inverse else 0
     known = {"size": size, "value": value, "stated": stated, "cells": cells}
     known |= {"inverse": inverse, "stated_inverse": stated_inverse}
-    return str(_SOLVED[fault]["text"].format(**known))
+    wrong = value < 0 and "below_zero" in _SOLVED[fault]
+    return str(_SOLVED[fault]["below_zero" if wrong else "text"].format(**known))
 
 
 def _change(exact: Resolved, fault: str, scale: Floats, size: float) -> Floats | None:

@@ -7,7 +7,16 @@ from functools import lru_cache
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Case, InputError, Readings, Sweep, solve_sweep, through_points
+from analytic import (
+    CLAMP_READINGS,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    solve_sweep,
+    through_points,
+    with_friction,
+)
 from analytic.numerics.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.quantities import QUANTITIES
@@ -60,13 +69,18 @@ class Resolved:
     def change(self, fault: str, size: float) -> Floats | None:
         """What a fault adds to the clamp readings, by its size in the unit of `unit_of`."""
         try:
-            there = between(self.foot_x, *_sweep(self._changed(fault, size)))
+            there = between(self.foot_x, *self._swept_with(fault, size))
         except (InputError, ArithmeticError):
             return None
         if fault == "clamp":
             # Past the rigid part the clamp's force acts at its end, the moment is about its foot.
             there[2] -= size * self.case.beam.length * there[0]
         return there - self.seen
+
+    def _swept_with(self, fault: str, size: float) -> tuple[Floats, Floats]:
+        if fault == "friction" and (along := self.case.friction + size) < 0:
+            return _sweep(replace(self.case, friction=0.0), along)
+        return _sweep(self._changed(fault, size))
 
     def _changed(self, fault: str, size: float) -> Case:
         """With one of `QUANTITIES` larger, or with a ``"clamp"`` that reaches so far along it.
@@ -115,12 +129,13 @@ def _through(points: bytes) -> Contour:
 
 
 @lru_cache(_KEPT)
-def _sweep(case: Case) -> tuple[Floats, Floats]:
+def _sweep(case: Case, along: float = 0.0) -> tuple[Floats, Floats]:
     """Foot positions, ascending, and the clamp readings there, NaN where it is free or unknown.
 
     A few in a row that cannot be solved, where the contour's curvature jumps, are left out.
+    Friction below zero, which no case has, is `along` the motion.
     """
-    sweep = solve_sweep(case)
+    sweep = with_friction(case, along) if along else solve_sweep(case)
     foot_x, rows = sweep.values("foot_x"), np.stack([sweep.values(n) for n in CLAMP_READINGS])
     kept = ~_few_in_a_row(says(sweep.table["status"], "diverged"))
     rows[:, says(sweep.table["phase"], "free")] = np.nan

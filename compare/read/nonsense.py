@@ -191,7 +191,10 @@ def check_back(foot_x: Floats, name: str) -> None:
 
 
 def check_ahead(foot_x: Floats, values: Floats, name: str) -> None:
-    """Refuse a pass in which the foot jumps ahead while the readings go on as if it did not."""
+    """Refuse a pass in which the foot jumps ahead while the readings go on as if it did not.
+
+    Where one of them does what its slope says, the foot went there, and the others are late.
+    """
     known = np.isfinite(values).all(axis=0)
     foot_x, values = foot_x[known], values[:, known]
     steps, travel = np.diff(foot_x), float(np.ptp(foot_x))
@@ -204,8 +207,10 @@ def check_ahead(foot_x: Floats, values: Floats, name: str) -> None:
         slopes, heights = lines[:, 0], lines[:, 1]
         expected = np.abs(slopes.mean(axis=0) * steps[at])
         ends = slopes * foot_x[[at, at + 1], None] + heights
-        clear = expected > np.maximum(_SIGMAS * noise, _MOVING * size)
-        if clear.any() and np.all(np.abs(ends[1] - ends[0])[clear] < _SMOOTH * expected[clear]):
+        due, changes = expected > _SIGMAS * noise, np.abs(ends[1] - ends[0])
+        clear = due & (expected > _MOVING * size)
+        follows = (due & (changes > (1 - _SMOOTH) * expected)).any()
+        if clear.any() and np.all(changes[clear] < _SMOOTH * expected[clear]) and not follows:
             raise _jump(name, at, steps[at], "ahead, while the readings do not")
 
 

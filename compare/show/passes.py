@@ -1,6 +1,6 @@
 """The passes of a rig: what was kept, what was dropped, how far they repeat, and lag."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -140,35 +140,61 @@ def lag_summary(passes: Sequence[Pass], found: Lag | None, taken: float) -> Iter
     if found is None:
         yield Text(
             "whether readings lag behind the foot is not known: no convex contour explains the "
-            "passes in both directions (several objects, friction, a zero that is not taken off?)"
+            "passes in both directions (several objects, friction, a gain, sign or zero that is "
+            "off, a vibrissa or clamp that is not as stated?)"
         )
         return
     beam = passes[0].readings.beam
-    said = _lag_of(asdict(found)["way"], beam)
-    if not found.shows:
+    if found.way is None:
+        yield Text(
+            f"no lag, but {_otherwise(asdict(found)['otherwise'])}: that explains the passes"
+        )
+    elif not found.shows:
+        said = _lag_of(asdict(found)["way"], beam)
         yield Text(f"no lag of the readings shows: {said}, by passes in both directions")
     else:
-        ways = found.way.value, found.way.lowest, found.way.highest
-        speeds = [x for one in passes if (x := one.readings.provenance.get("speed"))]
-        if speeds:
-            speed = float(np.median(speeds))
-            late, least, most = (1e3 * way / speed for way in ways)
-            in_time = f"{late:.3g} ms (95 %: {least:.3g} to {most:.3g} ms)"
-            said = f"{in_time} at {quantity(speed, 'length', beam)}/s" if beam.si else said
-        which = "after" if found.way.value > 0 else "before"
-        in_all = ways[0] + taken
-        stated = f'"{1e3 * in_all:.4g} mm"' if beam.si else f"{in_all:.4g}"
-        yield Text(f"the readings come {which} the positions: {said}")
-        yield Text(
-            "  a stage's play or friction looks alike, an offset does not; passes at another speed "
-            f"show which it is. To take it off, write under [passes]: lag = {stated}"
-        )
+        yield from _shown(passes, found, taken)
     if abs(found.rigidity.value - 1) > _OFF:
         yield Text(f"  the passes fit a vibrissa of {found.rigidity.value:.3g} times [beam]'s EI")
 
 
+def _shown(passes: Sequence[Pass], found: Lag, taken: float) -> Iterator[Text]:
+    """A lag, in time if that is known, and what else it may be."""
+    assert found.way is not None
+    beam, ways = passes[0].readings.beam, (found.way.value, found.way.lowest, found.way.highest)
+    said = _lag_of(asdict(found)["way"], beam)
+    speeds = [x for one in passes if (x := one.readings.provenance.get("speed"))]
+    if speeds:
+        speed = float(np.median(speeds))
+        late, least, most = (1e3 * way / speed for way in ways)
+        in_time = f"{late:.3g} ms (95 %: {least:.3g} to {most:.3g} ms)"
+        said = f"{in_time} at {quantity(speed, 'length', beam)}/s" if beam.si else said
+    which = "after" if ways[0] > 0 else "before"
+    in_all = ways[0] + taken
+    stated = f'"{1e3 * in_all:.4g} mm"' if beam.si else f"{in_all:.4g}"
+    either = f"; or {_otherwise(asdict(found)['otherwise'])}" if found.otherwise else ""
+    yield Text(f"{'either ' * bool(either)}the readings come {which} the positions: {said}{either}")
+    yield Text(
+        "  a stage's play or friction looks alike, an offset does not; passes at another speed "
+        f"show which it is. To take it off, write under [passes]: lag = {stated}"
+    )
+
+
+def _otherwise(causes: Mapping[str, Mapping[str, float]]) -> str:
+    """Mistakes that look like a lag."""
+    said = {
+        "length": "a vibrissa of {:.4g} times [beam]'s length (95 %: {:.4g} to {:.4g})",
+        "lever": "moment_z about a point {:+.2g} L along the vibrissa off the clamp (95 %: {:+.2g} "
+        "to {:+.2g} L)",
+    }
+    each = (
+        (name, [x[end] for end in ("value", "lowest", "highest")]) for name, x in causes.items()
+    )
+    return "; or ".join(said[name].format(*numbers) for name, numbers in each)
+
+
 def with_lag(readings: Readings, found: Lag) -> Readings:
-    return replace(readings, provenance={**readings.provenance, _LAG: asdict(found.way)})
+    return replace(readings, provenance={**readings.provenance, _LAG: asdict(found)})
 
 
 def lag_remembered(passes: Sequence[Readings]) -> str | None:
@@ -176,11 +202,15 @@ def lag_remembered(passes: Sequence[Readings]) -> str | None:
     known = [x for one in passes if (x := one.provenance.get(_LAG))]
     if not known or len({one.runs_right for one in passes}) < 2:
         return None
-    if known[0]["lowest"] <= 0 <= known[0]["highest"]:
+    way, causes = known[0]["way"], []
+    if way is not None and way["lowest"] <= 0 <= way["highest"]:
         return None
-    which = "after" if known[0]["value"] > 0 else "before"
-    said = _lag_of(known[0], passes[0].beam)
-    return f"the readings come {which} the positions, as `rig` said: {said}"
+    if way is not None:
+        which = "after" if way["value"] > 0 else "before"
+        causes = [f"the readings come {which} the positions: {_lag_of(way, passes[0].beam)}"]
+    if known[0]["otherwise"]:
+        causes.append(_otherwise(known[0]["otherwise"]))
+    return f"as `rig` said, {'; or '.join(causes)}"
 
 
 def _lag_of(way: dict[str, float], beam: Beam) -> str:

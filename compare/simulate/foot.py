@@ -11,7 +11,9 @@ from mujoco_models.fix.edit import Edit
 from mujoco_models.inspect.ahead import WAY
 from mujoco_models.inspect.measured import MeasuredBeam
 
-_LEANS = 1e-3  # rad, beside how a curved one turns in a cell; by 1 degree readings are 6 % off
+# rad; by 1 degree readings are 6 % off. Beside it, of what a curved one turns by at its first joint
+# a third is between the clamp's tangent and the chord before that joint.
+_LEANS, _CHORD = 1e-3, 0.5
 _ALONG = 0.99  # cosine, of a slide that goes along the vibrissa
 _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _LEAPS = 0.01  # of the way; by so much a servo leaps as contact ends: by 0.02 it was 0.04 L late
@@ -51,9 +53,7 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
     elif found.drive is not None and "which is a force" in found.drive:
         yield Remark("fault", "foot", f"{found.drive}: nothing holds its speed",
                      "take a position or velocity actuator")  # fmt: skip
-    elif found.drive is not None and found.drive.startswith(
-        "mocap"
-    ):  # what is welded to one has a speed
+    elif found.drive is not None and found.drive.startswith("mocap"):  # a weld to one has a speed
         rubs = any(geom.meets and geom.friction for geom in found.geoms)
         said = (
             "friction does not see it move, and holds what should slide" if rubs else
@@ -86,7 +86,7 @@ def _astray(found: MeasuredBeam) -> Iterator[Remark]:
     if found.rail is None or (found.drive is None and found.objects):
         return
     x, y, z = (abs(float(part)) for part in found.rail.way)
-    allowed = _LEANS + abs(found.natural_curvature) * found.joints[0].cell
+    allowed = _LEANS + _CHORD * abs(found.joints[0].angle)
     for leans, what, remedy in (
         (math.asin(min(y, 1.0)),
          "from across the vibrissa, which nears the object as it goes along",

@@ -9,7 +9,6 @@ from analytic import Beam
 from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
 from compare.simulate.course import LEANS, on_course, on_plane
-from compare.simulate.expected import SPEED
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import EXPLICIT, FORCE, RADIUS, RIGIDITY, Remark
 from compare.simulate.rigidity import (
@@ -25,17 +24,15 @@ from compare.simulate.rigidity import (
     tapers,
     unevenness,
 )
+from compare.simulate.sensors import is_silent, on_sensors
 from compare.simulate.touched import on_contacts
 from mujoco_models.fix.edit import Edit
-from mujoco_models.inspect.measured import MeasuredBeam, Sensed, nearest_axes
+from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.inspect.unsolved import STRICT
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _LENGTH = 0.005  # relative; forces go with 1/L^2
 _JOINT = 0.05  # relative; one of twenty that is so far off moves readings by 0.25 per cent
-_ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
-_LEVER = 5e-3  # L; of the force's moment
-_LATE = 5e-3  # L; of the foot, as 0.1 T1 at 0.05 L/T1
 _SAG = 2e-3  # L; as a contact that is so far off
 _WAYS: tuple[tuple[Literal["fault", "note"], str], ...] = (
     ("fault", "as a sweep bends it"),
@@ -47,7 +44,6 @@ _ELASTICA = 0.02  # L; a sound chain of ten links is off by 4e-3 at P L^2/EI = 1
 # joints, 1.2e-2 and 2.7, 6e-3 and 1.4, 1e-3 and 0.2.
 _NONLINEAR = 5e-3
 _METRES = 3.0  # a longer vibrissa is rather one in millimetres
-_READS = 0.01  # of a load, by the sensor that should read all of it
 # Relative, in a tenth of a sweep (`MeasuredBeam.unsolved`). In all of it, up to 5e-3 cost at most
 # 0.4 per cent, 8e-3 to 0.03 from 0.2 to 0.8, 0.13 two, and 0.34 from 5 to 50.
 _UNSOLVED = 5e-3
@@ -67,7 +63,7 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
         *_rest(found),
         *on_plane(found),
         *on_foot(found),
-        *_sensors(found),
+        *on_sensors(found),
         *_flags(found),
         *_steps(found),
         *(() if _in_other_units(found, stated) else _contacts(found)),
@@ -234,98 +230,12 @@ def _rest(found: MeasuredBeam) -> Iterator[Remark]:
     said = []
     if sag > _SAG:
         said.append(f"bends the vibrissa by {sag:.1e} L at the tip")
-    if weight > RIGIDITY * FORCE and not (found.force is None or _silent(found.force)):
+    if weight > RIGIDITY * FORCE and not (found.force is None or is_silent(found.force)):
         said.append(f"puts {weight:.2g} EI/L^2 on the force sensor before anything touches")
     if said:
         yield Remark("fault", "gravity", f"{strength:.3g} {' and '.join(said)}",
                      "switch it off: a model of your own is compared without",
                      edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
-
-
-def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
-    for word, sensor in (("force", found.force), ("torque", found.torque)):
-        if sensor is None:
-            missing = [w for w, one in (("force", found.force), ("torque", found.torque))
-                       if one is None]  # fmt: skip
-            edits = treatment.with_sensors(found, *missing) if word == missing[0] else ()
-            yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa",
-                         f"add a site at the clamp and <{word} site=.../>", edits)  # fmt: skip
-            continue
-        if not sensor.feels_contacts:
-            yield Remark(
-                "fault", f"{word} sensor", f"{sensor.name!r} reads nothing of contacts: MuJoCo "
-                "leaves those of a flex out of what its own tree feels. Let the flex hang on a "
-                "free body that is welded to the one with the sensors"
-            )  # fmt: skip
-            continue
-        if _silent(sensor):
-            cause, remedy = (
-                ("MuJoCo leaves the weld that holds its free body out of what it feels",
-                 "let a body of its own, in the free one, hold the first joint and the site, or "
-                 "hold the free one by a slide with a velocity actuator")
-                if sensor.free else
-                ("it is not between foot and vibrissa", "put its site there")
-            )  # fmt: skip
-            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} reads nothing of a load on "
-                         f"the tip: {cause}", remedy)  # fmt: skip
-            continue
-        if sensor.bends:
-            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is on a link, and turns with "
-                         "it as the vibrissa bends", "put its site on the body that holds the first"
-                         " joint", treatment.before_joints(found, sensor))  # fmt: skip
-            continue
-        yield from _axes(word, sensor, found)
-        most = FORCE * as_intended(found) / found.length ** (2 if word == "force" else 1)
-        if sensor.cutoff < 2 * most:
-            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
-                         f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}",
-                         edits=(Edit("sensor", (("cutoff", "0"),), (sensor.number,)),))  # fmt: skip
-        if SPEED * sensor.late > _LATE * found.period:
-            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} reads up to "
-                         f"{sensor.late:.3g} late, as far as the foot goes "
-                         f"{SPEED * sensor.late / found.period:.2g} L",
-                         edits=(Edit("sensor", (("delay", "0"), ("interval", "0")),
-                                     (sensor.number,)),))  # fmt: skip
-        lever = np.linalg.norm(sensor.lever) / found.length
-        if lever > _LEVER:
-            yield Remark("fault" if word == "torque" else "note", f"{word} sensor",
-                         f"{sensor.name!r} is {lever:.3g} L away from where the vibrissa "
-                         "begins" + ("; its moments are counted from there"
-                                     if word == "torque" else ""),
-                         edits=treatment.at_clamp(sensor, found.length))  # fmt: skip
-
-
-def _silent(sensor: Sensed) -> bool:
-    return bool(np.abs(sensor.axes).max() < _READS)
-
-
-def _axes(word: str, sensor: Sensed, found: MeasuredBeam) -> Iterator[Remark]:
-    axes = sensor.axes
-    if np.abs(axes @ axes.T - np.eye(3)).max() > 1e-2:
-        yield Remark("fault", f"{word} sensor", f"{sensor.name!r} does not read the whole {word} "
-                     "at the clamp: it is not between foot and vibrissa")  # fmt: skip
-        return
-    nearest = nearest_axes(axes)
-    rotation = axes.T @ nearest
-    angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
-    with_rail = (
-        found.rail is not None
-        and abs(found.rail.way[2]) > np.sin(_ROTATED)
-        and all(
-            np.abs(axes @ way).max() > np.cos(_ROTATED) for way in (found.rail.way, (0.0, 1.0, 0.0))
-        )
-    )  # it is the hinges that are turned
-    if angle > _ROTATED and not with_rail:
-        yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is turned by "
-                     f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep",
-                     edits=treatment.straightened(sensor))  # fmt: skip
-    if not np.array_equal(nearest, np.eye(3)):
-        words = ", ".join(
-            f"{'-' if row[k] < 0 else ''}{'xyz'[k]}"
-            for row, k in zip(nearest, np.argmax(np.abs(nearest), axis=1), strict=True)
-        )
-        yield Remark("note", f"{word} sensor", f"its axes x, y, z are {words} of the sweep (y "
-                     "along the vibrissa, z along its hinges)")  # fmt: skip
 
 
 def _flags(found: MeasuredBeam) -> Iterator[Remark]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Case, Readings, Sweep, solve_sweep
+from analytic import CLAMP_READINGS, Case, Readings, Sweep, solve_sweep, with_friction
 from compare.sense.noise import with_noise
 
 _SEGMENTS = 40
@@ -290,6 +290,11 @@ MISTAKES: dict[str, Mistake] = {
     ),
     "friction": Mistake("friction", held(friction=(0.05, 0.2))),
     "friction stated": Mistake("friction", held(friction=(0.3, 0.5)), stated={"friction": 0.2}),
+    "friction along the motion": Mistake(
+        "friction of the wrong sign",
+        lambda case, rng: with_friction(replace(case, friction=0.0), -case.friction),
+        stated={"friction": 0.2},
+    ),
     "natural curvature": Mistake(
         "natural curvature",
         lambda case, rng: another(case, 0.3, natural_curvature=either(rng, 0.05, 0.4)),

@@ -172,7 +172,7 @@ class LeastSquaresFit:
         found = self._solved(numbers)
         if found is None:
             return np.full_like(self.measured.readings, np.nan)
-        return self._in_passes([one.readings for one in found])
+        return self._in_passes(numbers, [one.readings for one in found])
 
     def misses(self, numbers: Floats) -> Floats:
         """What they differ from the measured ones by, over the noise."""
@@ -185,19 +185,20 @@ class LeastSquaresFit:
             return columns
         here = self.misses(numbers)
         for i in range(len(numbers)):
-            step, cases = self._beside(numbers, i)
+            there, cases = self._beside(numbers, i)
             beside = [one.beside(*case) for one, case in zip(found, cases, strict=True)]
-            columns[:, i] = (self._missed(self._in_passes(beside)) - here) / step
+            moved = self._missed(self._in_passes(there, beside)) - here
+            columns[:, i] = moved / (there[i] - numbers[i])
         return columns
 
-    def _beside(self, numbers: Floats, i: int) -> tuple[float, list[tuple[Case, Floats]]]:
-        """The step of a number to either side, and its sweeps, if there are any."""
-        step = _STEP if numbers[i] + _STEP <= self.highest[i] else -_STEP
-        by_one = np.eye(len(numbers))[i]
+    def _beside(self, numbers: Floats, i: int) -> tuple[Floats, list[tuple[Case, Floats]]]:
+        """The numbers with one a step to either side, and its sweeps, if there are any."""
+        step = np.eye(len(numbers))[i] * _STEP
+        step = step if numbers[i] + _STEP <= self.highest[i] else -step
         try:
-            return step, self._cases(numbers + step * by_one)
+            return numbers + step, self._cases(numbers + step)
         except InputError:  # as of an object that reaches down to the clamp
-            return -step, self._cases(numbers - step * by_one)
+            return numbers - step, self._cases(numbers - step)
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
         """The same with the rigidity that fits best if nothing else depended on it."""
@@ -253,8 +254,8 @@ class LeastSquaresFit:
             for sweep, (_, solved) in self._sweeps.items()
         ]
 
-    def _in_passes(self, sweeps: Sequence[Floats]) -> Floats:
-        """Readings of the sweeps to either side, pass by pass."""
+    def _in_passes(self, numbers: Floats, sweeps: Sequence[Floats]) -> Floats:
+        """What a sensor reads of the sweeps to either side, pass by pass."""
         found, foot_x = np.empty_like(self.measured.readings), self.measured.foot_x
         for sweep, readings in zip(self._sweeps, sweeps, strict=True):
             here, solved = self._sweeps[sweep]
@@ -263,6 +264,7 @@ class LeastSquaresFit:
                 sign = -1 if sweep.direction == "left" else 1
                 places, nodes = sign * foot_x[here], sign * foot_x[solved]
                 found[:, here] = [np.interp(places, nodes, row) for row in readings]
+        found[2] += self.sought(numbers).lever * found[0]
         return found
 
     def _missed(self, found: Floats) -> Floats:

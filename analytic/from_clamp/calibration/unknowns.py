@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from analytic.numerics.arrays import Floats
 from analytic.problem.along import Along
@@ -21,6 +22,7 @@ _AT_THE_END = 1e-6  # from an end of what a number can be
 
 LAG = "lag"
 OFFSET = "offset"
+LEVER = "lever"
 OF_THE_FOOT = (OFFSET, LAG)  # unknowns that are none of the case but of its foot position
 
 
@@ -31,6 +33,7 @@ class Sought:
     case: Case
     offset: float = 0.0  # foot positions of the readings less the true ones [length]
     lag: float = 0.0  # the way that the foot goes until a reading is there [length]
+    lever: float = 0.0  # how far along the vibrissa off the clamp the moment is taken [length]
 
 
 @dataclass(frozen=True)
@@ -87,10 +90,9 @@ class Unknown(Number):
 
     def tried(self, sought: Sought, given: Case, number: float) -> Sought:
         value = number * self.unit(given)
-        if self.name == LAG:
-            return replace(sought, lag=value)
-        if self.name in OF_THE_FOOT:
-            return replace(sought, offset=value)
+        if self.name not in QUANTITIES:
+            changed: dict[str, Any] = {self.name: value}
+            return replace(sought, **changed)
         return replace(sought, case=QUANTITIES[self.name].at(sought.case, value))
 
     def value(self, sought: Sought) -> float:
@@ -98,7 +100,7 @@ class Unknown(Number):
         return self._of(sought, self.said or self.name)
 
     def _of(self, sought: Sought, name: str) -> float:
-        if name in OF_THE_FOOT:
+        if name not in QUANTITIES:
             return float(getattr(sought, name))
         return QUANTITIES[name].value(sought.case)
 
@@ -155,6 +157,12 @@ UNKNOWNS: dict[str, Unknown] = {
 The clamp is fitted by its compliance, of which a rigid one is an end, ``offset`` is by how much
 ``foot_x`` is too large, and ``lag`` by how much it is too large along the motion.
 """
+
+LOOK_LIKE_LAG: dict[str, Unknown] = {
+    "length": Unknown("length", 0.5, 2.0, unit=lambda given: given.beam.length),
+    LEVER: Unknown(LEVER, -0.5, 0.5, unit=lambda given: given.beam.length),
+}
+"""Mistakes that passes both ways past an unknown object may show as a lag."""
 
 
 def checked_unknowns(names: object, case: Case) -> tuple[str, ...]:

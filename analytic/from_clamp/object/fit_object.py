@@ -112,7 +112,8 @@ def fit_object(
     """
     check_family(family, FAMILIES)
     passes = as_passes(readings)
-    fit = families_fitted(passes, noise, (*beside, *late_if_both_ways(passes)))
+    others = [UNKNOWNS[name] for name in (*beside, *late_if_both_ways(passes))]
+    fit = families_fitted(passes, noise, others)
     return likeliest(
         family,
         FAMILIES,
@@ -127,12 +128,11 @@ def late_if_both_ways(passes: Sequence[Readings]) -> tuple[str, ...]:
 
 
 def families_fitted(
-    passes: Sequence[Readings], noise: Mapping[str, float] | None, beside: Sequence[str]
+    passes: Sequence[Readings], noise: Mapping[str, float] | None, others: Sequence[Unknown]
 ) -> Callable[[str], FittedObject]:
     """The fit of each family by its name, beside some unknowns of the vibrissa and its foot."""
     x, y, angles = _contacts(passes)
     circles = _circles_through(x, y)
-    others = [UNKNOWNS[name] for name in beside]
     known = families(angles)
     tried: dict[str, _Fit] = {}
 

@@ -2,20 +2,26 @@
 
 A contour of some family is fitted to all passes, and the lag and the vibrissa's rigidity with it:
 in a sweep to the left a lag moves all that is found to the left, in one to the right to the right.
+A vibrissa that is longer than stated, or a moment about a point off the clamp, explains nearly the
+same: each is fitted in the lag's place, and the likeliest counts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.calibration.calibrate import Estimate
-from analytic.from_clamp.calibration.unknowns import LAG
-from analytic.from_clamp.fitted import NoFamilyError
+from analytic.from_clamp.calibration.unknowns import LAG, LOOK_LIKE_LAG, UNKNOWNS, Unknown
+from analytic.from_clamp.fitted import NoFamilyError, likeliest
 from analytic.from_clamp.noise import known_to, reading_noise
-from analytic.from_clamp.object.fit_object import families_fitted, late_if_both_ways
+from analytic.from_clamp.object.fit_object import (
+    FittedObject,
+    families_fitted,
+    late_if_both_ways,
+)
 from analytic.from_clamp.passes import as_passes
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
@@ -27,15 +33,22 @@ _MEANS = 200  # of each direction: as many stations as an object needs
 
 @dataclass(frozen=True)
 class Lag:
-    """How far the foot goes until a reading of its place is there."""
+    """How far the foot goes until a reading of its place is there, or what explains that better."""
 
-    way: Estimate  # [length]; negative if the readings come before the place
+    way: Estimate | None  # [length]; negative if the readings come before the place
     rigidity: Estimate  # of the vibrissa, over the stated one
     family: str  # of the contour that explains both directions
+    # What else explains them as well, or alone if there is no `way`: the vibrissa's ``length``, and
+    # the ``lever`` along it from the clamp to where the moment is taken, both over L.
+    otherwise: dict[str, Estimate] = field(default_factory=dict)
 
     @property
     def shows(self) -> bool:
-        return not self.way.lowest <= 0 <= self.way.highest
+        return self.way is None or not _may_be_zero(self.way)
+
+
+def _may_be_zero(way: Estimate) -> bool:
+    return way.lowest <= 0 <= way.highest
 
 
 def lag_between(readings: Sequence[Readings]) -> Lag | None:
@@ -60,19 +73,47 @@ def lag_between(readings: Sequence[Readings]) -> Lag | None:
     means = [
         _mean_of([one for one in passes if one.runs_right == right]) for right in (False, True)
     ]
-    found = None
+    noise = _noise_of(means)
+    late = _explaining(means, noise, UNKNOWNS[LAG], _FAMILIES)
+    fits = {} if late is None else {LAG: late}
+    if late is None or not _may_be_zero(late.found[LAG]):
+        simple = _FAMILIES.index(late.family) + 1 if late else -1  # more has an object by chance
+        for name, unknown in LOOK_LIKE_LAG.items():
+            other = _explaining(means, noise, unknown, _FAMILIES[:simple])
+            fits |= {} if other is None else {name: other}
+    if not fits:
+        return None
+    named = {name: replace(fit, family=name) for name, fit in fits.items()}
+    best = likeliest("auto", [*named], named.__getitem__, "")
+    possible = [best.family, *best.others]
+    rigidity, size = best.found["flexural_rigidity"], passes[0].beam.base_rigidity
+    return Lag(
+        fits[LAG].found[LAG] if LAG in possible else None,
+        _over(rigidity, size),
+        fits[best.family].family,
+        {x: _over(fits[x].found[x], passes[0].beam.length) for x in possible if x != LAG},
+    )
+
+
+def _explaining(
+    means: Sequence[Readings],
+    noise: Mapping[str, float],
+    unknown: Unknown,
+    families: Sequence[str],
+) -> FittedObject | None:
+    """The simplest object that explains all beside an unknown and the vibrissa's rigidity."""
     with suppress(InputError):  # as of an object that one direction does not touch
-        fit = families_fitted(means, _noise_of(means), ("flexural_rigidity", LAG))
-        for family in _FAMILIES:
+        fit = families_fitted(means, noise, [UNKNOWNS["flexural_rigidity"], unknown])
+        for family in families:
             with suppress(NoFamilyError):
                 found = fit(family)
                 if found.explains:
-                    break
-    if found is None or not found.explains:
-        return None
-    rigidity, size = found.found["flexural_rigidity"], passes[0].beam.base_rigidity
-    shares = (x / size for x in (rigidity.value, rigidity.lowest, rigidity.highest))
-    return Lag(found.found[LAG], Estimate(*shares), family)
+                    return found
+    return None
+
+
+def _over(found: Estimate, size: float) -> Estimate:
+    return Estimate(found.value / size, found.lowest / size, found.highest / size)
 
 
 def _noise_of(means: Sequence[Readings]) -> dict[str, float]:

@@ -8,7 +8,7 @@ import pytest
 from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, solve_sweep
 from analytic.from_clamp.noise import scatter
 from compare.measure.repeats import repeats
-from compare.read.nonsense import spikes
+from compare.read.nonsense import check_ahead, spikes
 from compare.read.passes import look_at_passes, usable
 from compare.read.rig_file import read_rig
 from compare.show.passes import passes_summary, repeats_summary
@@ -182,6 +182,24 @@ def stuck(values):
 
 def jumped(row, by):
     return lambda values: values + by * (np.arange(values.shape[1]) >= row) * [[1], [0], [0], [0]]
+
+
+def test_a_channel_that_is_late_over_a_gap_is_no_clock_that_jumps():
+    """Four rows late force_y does not jump where the foot does, but the others do."""
+    even = np.linspace(0, 0.8, 320)
+    foot_x = even + 0.2 * (even > 0.5)
+
+    def seen(place):
+        noise = np.random.default_rng(1).standard_normal((3, len(place)))
+        slope, start = np.array([[0.3], [1.0], [0.8]]), np.array([[2.0], [0.1], [2.0]])
+        return start + slope * place + 1e-4 * noise
+
+    late = seen(foot_x)
+    late[1, 4:] = late[1, :-4]
+    for values in (seen(foot_x), late):
+        check_ahead(foot_x, values, "pass")
+    with pytest.raises(InputError, match=r"jump by \+0\.2.*ahead"):
+        check_ahead(foot_x, seen(even), "pass")
 
 
 def without_contact(values):
