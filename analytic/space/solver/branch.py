@@ -169,7 +169,7 @@ class Branch:
             turns &= following.event in ("stick", "slide")
             if not turns or following.last.travel - state.travel > _AT_ONCE:
                 return following
-            # It turns before the panel's first point: from where, a shorter one may tell.
+            # It turns before the first point of a panel, which has to be shorter to show it.
             found = self._panel(leg, state, found.law.sticks, most, None)
         return None  # it neither sticks nor slides, or rounding alone says which
 
