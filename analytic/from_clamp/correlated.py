@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import log_softmax, logsumexp, softmax
+from scipy.special import gammaln, log_softmax, logsumexp, softmax
 
 from analytic.numerics.arrays import Booleans, Floats, Integers
 
@@ -21,12 +21,17 @@ _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZE
 _WHITE = 5.0  # times as likely beforehand as all that remembers
 _LONG = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories count more: one sweep shows least of them
 _PRIOR = _LONG / _LONG.sum() / _WHITE
-# Where noise is stated, what remembers hides less, and counts as much as white noise: of AR(0.9)
-# few stations would be taken for white.
-_STATED = np.log(np.sqrt(_PRIOR) / np.sqrt(_PRIOR).sum() / _PRIOR)
+# Where noise is stated, what remembers cannot hide, and any memory is as likely: of AR(0.9) few
+# stations would be taken for white, or for a long memory whose size is nearly all a zero's.
+_STATED = -np.log(_PRIOR.size * _PRIOR * _WHITE)
 _LOG_PRIOR = np.log(np.concatenate([[[1.0]], _PRIOR]))
 _NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _STATED_TO = 0.2  # relative, of a stated noise's variance: the noise is known to a tenth
+# Of that: no less than stated, of which few stations show less.
+_MORE = np.linspace(0.0, 3.0, 7)[:, None, None]
+# Of sizes, so many are stated too large, for each e-fold of the variance: rare, yet without these
+# white noise of a fifth of it was a long memory's.
+_LESS = 0.003
 _DRAWS = 400  # of the noise, over which the estimate is averaged
 _ENOUGH = 4000  # stations; of more, neighbours count as one
 _FEW = 2  # a spread takes two
@@ -156,21 +161,22 @@ def estimate(
     freedom = len(columns) - free.sum(axis=(0, 2))
     determinants = root[:, None] + logarithm.sum(axis=0)
     square, weights = _likely(left.sum(axis=0)[..., 0, 0], determinants, freedom)
-    if least:
-        # Noise that is stated has no more in all than that, or than what is left.
-        total = square * (1 + _GRID[:, 1:]) / np.maximum(freedom * least**2, square[0])
-        weights -= (np.log(np.maximum(total, 1.0)) / _STATED_TO) ** 2 / 2
-        weights[1:] += _STATED
-    likely = softmax(weights, axis=0)
-    draws = _DRAWS if known else _FEW  # where only the noise is sought
     draw = np.random.default_rng(seed)
+    draws = _DRAWS if known else _FEW  # where only the noise is sought
+    sized = np.empty((0, readings.shape[1]))  # variances that what is stated gives
+    if least:
+        sized, weights = _as_stated(square, weights, freedom, least)
+    likely = softmax(weights, axis=0)
     drawn = []
     for channel in range(readings.shape[1]):
-        at = draw.choice(len(_GRID), size=draws, p=likely[:, channel])
-        variance = square[at, channel] / draw.chisquare(freedom[channel], size=draws)
-        # It is no less than stated, remembering or not: few stations show less of what does.
-        variance = np.maximum(variance, least**2 / (1 + _GRID[at, 1]))
-        drawn.append((at, channel, variance[:, None, None]))
+        at = draw.choice(len(likely), size=draws, p=likely[:, channel])
+        at, beyond = at % len(_GRID), at - len(_GRID)
+        size = square[at, channel] / draw.chisquare(freedom[channel], size=draws)
+        # No less than stated is drawn even where it is taken for too large.
+        size = np.maximum(size, least**2 / (1 + _GRID[at, 1]))
+        size[beyond >= 0] = sized[beyond[beyond >= 0], channel]
+        drawn.append((at, channel, size[:, None, None]))
+    likely = likely.reshape(-1, len(_GRID), readings.shape[1]).sum(axis=0)
     systems = (sum(one[at, channel] / size for at, channel, size in drawn) for one in gram)
     one_by_one = _without_nuisances(systems, prior, known)[0]
     white = gram[:, :1].sum(axis=2)
@@ -303,6 +309,28 @@ def _likely(left: Floats, determinants: Floats, freedom: Integers | int) -> tupl
     """Sums of squares, and logarithms of each noise's likelihood, each shape (grid, channels)."""
     square = np.maximum(left, freedom * _NOISELESS**2)
     return square, _LOG_PRIOR - (freedom * np.log(square) + determinants) / 2
+
+
+def _as_stated(
+    square: Floats, weights: Floats, freedom: Integers, least: float
+) -> tuple[Floats, Floats]:
+    """Of noises whose size in all is stated, or shown to be more: the white part's variance.
+
+    Shape (sizes * grid, channels). And how likely each is, behind those of the size that is left:
+    shape (grid + sizes * grid, channels).
+    """
+    stated = np.maximum(least**2, square[0] / freedom)
+    variance = stated * np.exp(_STATED_TO * _MORE) / (1 + _GRID[:, 1:])
+    over = square / variance
+    likely = weights + (freedom * np.log(over) - over - _MORE**2) / 2
+    likely -= logsumexp(-(_MORE**2) / 2)
+    total = np.maximum(square * (1 + _GRID[:, 1:]) / (freedom * stated), 1.0)
+    smaller = weights - (np.log(total) / _STATED_TO) ** 2 / 2
+    smaller += gammaln(freedom / 2) + freedom / 2 * np.log(2) + np.log(_LESS)
+    every = np.concatenate([smaller[None], likely])
+    every[:, 1:] += _STATED
+    channels = square.shape[1]
+    return variance.reshape(-1, channels), every.reshape(-1, channels)
 
 
 def likelihood(by_noise: Floats, seen: Floats | None = None) -> float:

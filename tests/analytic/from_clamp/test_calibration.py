@@ -127,10 +127,14 @@ def intervals(repeats, level, true, unknowns):
 @pytest.mark.trial
 @VIBRISSAE
 def test_intervals_hold_the_true_values(level, true, unknowns):
-    """95 % are aimed at; 1.5 % is the standard deviation of that share of 200."""
+    """95 % are aimed at; 1.5 % is the standard deviation of that share of 200.
+
+    It is 96 to 98 %, as intervals of so few stations allow for noise that remembers, and for a zero
+    that is off by 0.1 %; of 98 % all 200 are held once in 60 trials.
+    """
     for name, estimates in intervals(200, level, true, unknowns).items():
         held = sum(one.lowest <= unknowns[name] <= one.highest for one in estimates)
-        assert 180 <= held <= 198, name
+        assert 180 <= held <= 199, name
 
 
 @pytest.mark.slow

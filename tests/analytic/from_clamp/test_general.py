@@ -218,11 +218,14 @@ def test_a_cone_shows_it_too():
 
 
 def errors(level, tip, times):
-    """Of noisy sweeps, each over its own uncertainty."""
+    """Of noisy sweeps, each over its own uncertainty; zeros are off by the 0.1 % allowed for."""
     exact = swept(0.3, stations=100, tip=tip).with_friction(0.0)
     noise, rng = relative_noise(exact, level), np.random.default_rng(1)
+    zeros = relative_noise(exact, 1e-3)
     for _ in range(times):
-        found = estimate_friction(noisy(exact, noise, rng), noise)
+        one = noisy(exact, noise, rng)
+        off = {name: one.values(name) + zero * rng.normal() for name, zero in zeros.items()}
+        found = estimate_friction(replace(one, table=one.table.assign(**off)), noise)
         yield (found.coefficient - 0.3) / found.uncertainty
 
 
@@ -239,12 +242,11 @@ def errors(level, tip, times):
 def test_uncertainty_is_as_large_as_estimates_scatter(level, tip, times):
     """The mean of squares of errors over deviations is 1 +- 0.4 of twelve; of 100 95 % are within.
 
-    Of an uncertainty half as large it is four times as much; without a tip that is cut off it is
-    twice as large as it has to be.
+    Of an uncertainty half as large it is four times as much, of one twice as large a quarter, as
+    it is if no zero is off.
     """
     found = np.array([*errors(level, tip, times)])
-    least, most = (0.3, 2.0) if tip else (0.2, 0.8)
-    assert least < np.mean((1.96 * found) ** 2) < most
+    assert 0.5 < np.mean((1.96 * found) ** 2) < 2.0
     assert times < 100 or (np.abs(found) <= 1).sum() >= 89
 
 

@@ -153,7 +153,7 @@ def test_intervals_hold_the_true_values(kind, unknowns):
 @pytest.mark.slow
 def test_few_stations_do_not_take_a_stated_noise_for_white():
     found = np.array([*errors(autoregressive(0.9), [0, 1], 60, least=1.0, every=3)])
-    assert np.mean(np.abs(found) < 1.96) > 0.85
+    assert np.mean(np.abs(found) < 1.96) > 0.9
 
 
 @pytest.mark.slow
@@ -214,17 +214,18 @@ def test_a_reading_that_depends_on_nothing_fitted_shows_its_noise_alone():
 @pytest.mark.parametrize(
     ("number", "left_out", "most"),
     [
-        (np.repeat([-1.0, 1.0], 12), 29, 1.45),
-        (np.ones(24), 0, 1.35),
-        (np.linspace(-1.0, 1.0, 24), 0, 1.3),
+        (np.repeat([-1.0, 1.0], 12), 29, 1.15),
+        (np.ones(24), 0, 1.0),
+        (np.linspace(-1.0, 1.0, 24), 0, 1.15),
     ],
     ids=["gap", "mean", "slope"],
 )
 def test_intervals_hold_of_few_stations_whose_stated_noise_remembers(number, left_out, most):
     """Errors over what is stated of them; 1 is meant, and 150 draws show it to 0.06.
 
-    They were 2.3, as the stations beside a gap were neighbours, and 1.5, as so few stations show
-    less noise than there is.
+    They were 2.3, as the stations beside a gap were neighbours, 1.5, as so few stations show less
+    noise than there is, and 1.3 and 1.2, as a noise of which too little is left was as likely. Of a
+    mean they are 0.8: a longer memory, which 24 stations do not exclude, is nearly all in that.
     """
     draw, since = np.random.default_rng(0), np.ones(24)
     since[12] += left_out
@@ -236,4 +237,4 @@ def test_intervals_hold_of_few_stations_whose_stated_noise_remembers(number, lef
         seen = lfilter([1.0], [1.0, -0.9], white, axis=0)[np.cumsum(since).astype(int) - 1]
         found = estimate(seen, by_number, none, np.empty(0), 1.0, since=since)
         errors.append(found.numbers[0] / np.sqrt(found.covariance[0, 0]))
-    assert 0.8 < np.sqrt(np.mean(np.square(errors))) < most
+    assert 0.75 < np.sqrt(np.mean(np.square(errors))) < most
