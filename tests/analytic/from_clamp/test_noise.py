@@ -150,6 +150,14 @@ def test_intervals_hold_the_true_values(kind, unknowns):
     assert np.all(held < 0.997)
 
 
+@pytest.mark.parametrize(("stations", "stated", "said"), [(39, 0, 1), (40, 0, 0), (39, 1, 0)])
+def test_so_few_stations_do_not_show_whether_noise_remembers(stations, stated, said):
+    by_number, none = np.ones((stations, 1, 1)), np.zeros((stations, 1, 0))
+    seen = np.random.default_rng(0).standard_normal((stations, 1))
+    found = estimate(seen, by_number, none, np.empty(0), stated)
+    assert sum("do not show" in line for line in found.noise.said(["force_x"])) == said
+
+
 @pytest.mark.slow
 def test_few_stations_do_not_take_a_stated_noise_for_white():
     found = np.array([*errors(autoregressive(0.9), [0, 1], 60, least=1.0, every=3)])
