@@ -58,9 +58,10 @@ def _radau() -> Floats:
 POINTS = _radau()  # shares of a panel: its begin, and Radau's points with its end
 _SERIES = np.linalg.inv(legendre.legvander(2 * POINTS - 1, _POINTS))
 _SLOPES = 2 * legendre.legvander(2 * POINTS - 1, _POINTS - 1) @ legendre.legder(_SERIES)
+_LOOKED_AT = 1, 3, 5, 7, 8  # of them: where friction may go astray
 _SHARES = (np.arange(64) + 0.5) / 64
-_BETWEEN = legendre.legvander(2 * _SHARES - 1, _POINTS - 1) @ np.linalg.inv(
-    legendre.legvander(2 * POINTS[1:] - 1, _POINTS - 1)
+_BETWEEN = legendre.legvander(2 * _SHARES - 1, len(_LOOKED_AT) - 1) @ np.linalg.inv(
+    legendre.legvander(2 * POINTS[list(_LOOKED_AT)] - 1, len(_LOOKED_AT) - 1)
 )
 
 
@@ -115,42 +116,19 @@ class Law(NamedTuple):
     def along_curve(self, state: Sliding) -> Floats:
         """Rates as the foot goes on, shape (8,); at first contact friction keeps its direction."""
         ways = self.ways(state)
-        law = self._slips(state)
+        law = self.slips(state)
         if state.contact.force == 0:
             law[:, RUB] = ways @ state.sides.T
         found = np.linalg.svd(np.vstack([self.rows(state), law]))[2][-1]
         return np.asarray(found * np.sign(found[TRAVEL]))
 
-    def _slips(self, state: Sliding) -> Floats:
+    def slips(self, state: Sliding) -> Floats:
         """Of rates, how fast it moves along the body where it must not, shape (0 to 2, 8)."""
         ways = self.ways(state)
         found = np.zeros((len(ways), 8))
         found[:, :2] = ways @ state.moved
         found[:, LENGTH] = -(ways @ state.end)
         return found
-
-    def beside(self, scene: Scene, state: Sliding, by: Floats) -> tuple[float, float]:
-        """How fast it slips by how far friction points elsewhere, and what turning takes of that.
-
-        Their quotient says how fast such a difference decays along the curve; where it grows, it
-        slides so in no experiment, and but for rounding in no solution.
-        """
-        across = cross(state.contact.spot.normal, state.rub)
-
-        def rates(one: Sliding, ahead: float, turned: float) -> Floats:
-            """At rest, by how fast it goes ahead and friction turns."""
-            turns = np.zeros(8)
-            turns[RUB] = one.sides @ across
-            rows = np.vstack([self.rows(one), grows(one, by), turns])
-            return np.asarray(np.linalg.solve(rows, [*np.zeros(6), ahead, turned]))
-
-        along, aside = changed(state, self.along_curve(state)), rates(state, 0.0, 1.0)
-        turned = float(across @ along[3:6] / (by @ along))
-        step = _ELSEWHERE * self.friction**2
-        vector = state.vector + step * changed(state, aside)
-        near = state_of(scene, vector, state.contact.tangent)
-        slips = float(self._slips(near)[0] @ rates(near, 1.0, turned))
-        return slips / step, float(self._slips(state)[0] @ aside)
 
     def settled(
         self, scene: Scene, near: Sliding, by: Floats, amount: float, enough: float = _AT_REST
@@ -198,12 +176,34 @@ class Panel(NamedTuple):
         """How wrong the rates are at most by rounding: the last polynomial's at the ends."""
         return _POINTS**2 * _OF_ROUNDING * self.rounding / self.reach
 
+    def beside(self, point: int) -> tuple[float, float]:
+        """How fast it slips by how far friction points elsewhere, and what turning takes of that.
+
+        Their quotient says how fast such a difference decays along the curve; where it grows, it
+        slides so in no experiment, and but for rounding in no solution.
+        """
+        law, state = self.law, self.states[point]
+        across = cross(state.contact.spot.normal, state.rub)
+
+        def rates(one: Sliding, ahead: float, turned: float) -> Floats:
+            """At rest, by how fast it goes ahead and friction turns."""
+            turns = np.zeros(8)
+            turns[RUB] = one.sides @ across
+            rows = np.vstack([law.rows(one), grows(one, self.by), turns])
+            return np.asarray(np.linalg.solve(rows, [*np.zeros(6), ahead, turned]))
+
+        turned = _SLOPES[point] @ [one.rub @ across for one in self.states] / self.reach
+        aside, step = rates(state, 0.0, 1.0), _ELSEWHERE * law.friction**2
+        vector = state.vector + step * changed(state, aside)
+        near = state_of(self.scene, vector, state.contact.tangent)
+        slips = float(law.slips(near)[0] @ rates(near, 1.0, float(turned)))
+        return slips / step, float(law.slips(state)[0] @ aside)
+
     def astray(self, so_far: float, end: float) -> float:
         """Logarithm of how much another direction of friction has grown, up to a share of it."""
         if not self.law.rubs:
             return 0.0
-        beside = [self.law.beside(self.scene, state, self.by) for state in self.states[1:]]
-        slips, turning = (_BETWEEN @ beside).T
+        slips, turning = (_BETWEEN @ [self.beside(point) for point in _LOOKED_AT]).T
         within = (POINTS[1] < _SHARES) & (end > _SHARES)  # at first contact it is steep before
         for decays in (slips / turning)[within] * self.reach / len(_SHARES):
             so_far = max(0.0, so_far - decays)
