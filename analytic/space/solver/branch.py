@@ -125,7 +125,7 @@ class Branch:
             goes_on = "stick" if self._friction else "slip-off"
             if found is None or self._margins(found, 1)[goes_on] <= 0:
                 continue
-            if self._friction and np.prod(found.beside(1)) < 0:
+            if self._friction and np.prod(found.beside(1, found.aside(1))) < 0:
                 continue  # a direction that goes astray from the start
             return Held(state, np.zeros(3), self._stretch(found))
         return None

@@ -45,7 +45,7 @@ _GUESSED = 1e-5  # the same without friction, where a state needs no other one
 _NEARLY = 1e-9  # of such a state's equations
 _UP_TO_RELEASE = 0.999  # of the way to where a tip, that a body can only push, is straight
 _SHARE = 1e-15  # of a panel, to which a place on it is enclosed
-_ELSEWHERE = 1e-6  # rad, of friction's direction
+_ELSEWHERE = 1e-6  # of friction, beside the curve
 _GONE = 16.0  # e-folds: rounding of 1e-16 of friction's direction is 1e-9, and goes on growing
 _AT_REST = 1e-15  # of the equations, by the extent
 
@@ -176,34 +176,38 @@ class Panel(NamedTuple):
         """How wrong the rates are at most by rounding: the last polynomial's at the ends."""
         return _POINTS**2 * _OF_ROUNDING * self.rounding / self.reach
 
-    def beside(self, point: int) -> tuple[float, float]:
-        """How fast it slips by how far friction points elsewhere, and what turning takes of that.
+    def aside(self, point: int) -> Floats:
+        """Direction across the curve to what friction elsewhere would make of it, shape (12,)."""
+        along = _SLOPES[point] @ [one.vector for one in self.states]
+        state = self.states[point]
+        ways = [changed(state, rates) for rates in np.linalg.svd(self.law.rows(state))[2][-2:]]
+        found = (ways[1] @ along) * ways[0] - (ways[0] @ along) * ways[1]
+        return np.asarray(found / np.sqrt(found @ found))
 
-        Their quotient says how fast such a difference decays along the curve; where it grows, it
+    def beside(self, point: int, aside: Floats) -> tuple[float, float]:
+        """How fast it slips by how far it is beside the curve, and what going aside takes of that.
+
+        Their quotient says how fast such a distance decays along the curve; where it grows, it
         slides so in no experiment, and but for rounding in no solution.
         """
-        law, state = self.law, self.states[point]
-        across = cross(state.contact.spot.normal, state.rub)
+        law, state, step = self.law, self.states[point], _ELSEWHERE * self.law.friction
 
-        def rates(one: Sliding, ahead: float, turned: float) -> Floats:
-            """At rest, by how fast it goes ahead and friction turns."""
-            turns = np.zeros(8)
-            turns[RUB] = one.sides @ across
-            rows = np.vstack([law.rows(one), grows(one, self.by), turns])
-            return np.asarray(np.linalg.solve(rows, [*np.zeros(6), ahead, turned]))
+        def slips(one: Sliding, *amounts: float) -> float:
+            """At rest, by how fast it goes along and aside."""
+            rows = np.vstack([law.rows(one), grows(one, self.by), grows(one, aside)])
+            return float(law.slips(one)[0] @ np.linalg.solve(rows, [*np.zeros(6), *amounts]))
 
-        turned = _SLOPES[point] @ [one.rub @ across for one in self.states] / self.reach
-        aside, step = rates(state, 0.0, 1.0), _ELSEWHERE * law.friction**2
-        vector = state.vector + step * changed(state, aside)
-        near = state_of(self.scene, vector, state.contact.tangent)
-        slips = float(law.slips(near)[0] @ rates(near, 1.0, float(turned)))
-        return slips / step, float(law.slips(state)[0] @ aside)
+        near = state_of(self.scene, state.vector + step * aside, state.contact.tangent)
+        return slips(near, 1.0, 0.0) / step, slips(state, 0.0, 1.0)
 
     def astray(self, so_far: float, end: float) -> float:
         """Logarithm of how much another direction of friction has grown, up to a share of it."""
         if not self.law.rubs:
             return 0.0
-        slips, turning = (_BETWEEN @ [self.beside(point) for point in _LOOKED_AT]).T
+        asides = np.array([self.aside(point) for point in _LOOKED_AT])
+        asides *= np.sign(asides @ asides[0])[:, None]
+        beside = [self.beside(*each) for each in zip(_LOOKED_AT, asides, strict=True)]
+        slips, turning = (_BETWEEN @ beside).T
         within = (POINTS[1] < _SHARES) & (end > _SHARES)  # at first contact it is steep before
         for decays in (slips / turning)[within] * self.reach / len(_SHARES):
             so_far = max(0.0, so_far - decays)
