@@ -207,10 +207,13 @@ class Panel(NamedTuple):
         asides = np.array([self.aside(point) for point in _LOOKED_AT])
         asides *= np.sign(asides @ asides[0])[:, None]
         beside = [self.beside(*each) for each in zip(_LOOKED_AT, asides, strict=True)]
+        decays = np.divide(*np.transpose(beside))
+        if (decays > 0).all():  # between them steep polynomials may not be so
+            return max(0.0, so_far - float(decays.min()) * self.reach * end)
         slips, turning = (_BETWEEN @ beside).T
         within = (POINTS[1] < _SHARES) & (end > _SHARES)  # at first contact it is steep before
-        for decays in (slips / turning)[within] * self.reach / len(_SHARES):
-            so_far = max(0.0, so_far - decays)
+        for less in (slips / turning)[within] * self.reach / len(_SHARES):
+            so_far = max(0.0, so_far - less)
             if so_far > _GONE:
                 return np.inf  # elsewhere it does not come back
         return so_far
