@@ -322,4 +322,4 @@ def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) 
     resting = np.median(np.abs(idle / scale[:, None]), axis=1)
     if (resting > jumps / 3).all():
         return f"noise: {size}, and without contact they do too; see `--noise auto`"
-    return f"{_ANGULAR}: {size}, but not without contact; --budget tells which"
+    return f"{_ANGULAR}: {size}, but not without contact; --budget shows which"

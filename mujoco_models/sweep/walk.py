@@ -30,6 +30,8 @@ _LITTLE = 1e-3  # of a step; a contact of 5e7 EI/L^3 is not lost then, and rest 
 _PLACES = 9  # of the rigid part at the clamp that are looked at
 _OVERLOOKED = 1e-6  # L; how deep they may be in the obstacle
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
+_BUCKLES = np.pi**2 / 4  # EI/L^2, of a column whose loaded end is free to go aside (Euler)
+_STRAIGHT = 0.01  # rad, L; a load across it that is a hundredth of that turns it as far
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Side.AHEAD, Side.AHEAD),
@@ -90,7 +92,8 @@ class Walk(Generic[Model]):
         self.doubt = self._advance(target, self.model.evaluations + self._budget)
         if self.doubt is None:
             self._budget = min(2 * self._budget, numerics.budget)
-            self._shown, self.doubt = self._state, self._lost or self._too_coarse()
+            self._shown = self._state
+            self.doubt = self._lost or self._too_coarse() or self._is_column()
         else:
             self._budget = max(self._budget // 2, numerics.least_budget)
             # The readings are those of the nearest that there is to a state at rest.
@@ -117,6 +120,19 @@ class Walk(Generic[Model]):
         near = () if layout.clamp_turns else model.obstacle.near(rigid, deep)
         if any(model.obstacle.clearance(rigid[i])[0] < deep for i in near):
             return "the object is in the rigid half of the first cell from the clamp"
+        return None
+
+    def _is_column(self) -> str | None:
+        """Whether it is pressed along its axis by more than it bears without giving way.
+
+        No joint of a straight one is out of balance then, however large the force is.
+        """
+        angles, clamp = self._state.angles, self.model.clamp()
+        load = math.hypot(clamp.force_x, clamp.force_y)
+        straight = turned(angles, np.zeros_like(angles)) < _STRAIGHT
+        along = straight and abs(clamp.moment_z) < _STRAIGHT * load
+        if along and load > _BUCKLES and self.model.contacts().loaded.any():
+            return "it stands straight under more than its buckling load, and would give way"
         return None
 
     def _advance(self, target: float, limit: int) -> str | None:

@@ -155,7 +155,7 @@ def test_faults_planted_in_mujoco(name, settings, said):
 
 
 def test_links_too_long_for_a_small_object_jump_as_facets_do():
-    """Past a circle of 0.05 L, 160 segments mend it, and 20,000 points of the mesh do not."""
+    """Past a circle of 0.05 L, 160 segments are enough, 20,000 points of the mesh are not."""
     small = circle(0.0523, lowest=(-0.103, 0.307))
     case = Case(profile=small, sweep=Sweep(30, direction="right"), clamp_angle=0.565)
     found = compare(solve_sweep(case), simulate_sweep(case, Settings(segments=40)))
