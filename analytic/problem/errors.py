@@ -71,9 +71,18 @@ def unknown(
 def require(name: str, value: object, kind: type[_Kind], remedy: str) -> _Kind:
     """The value; refuse what is of another kind, before something inside stumbles over it."""
     if not isinstance(value, kind):
-        found = repr(value) if isinstance(value, str) else f"a {type(value).__name__}"
-        raise InputError(name, found[:80], f"a {kind.__name__}", remedy)
+        found = repr(value) if isinstance(value, str) else kind_of(value)
+        raise InputError(name, found[:80], _with_article(kind), remedy)
     return value
+
+
+def kind_of(value: object) -> str:
+    """What a value is, where it is not said itself: ``"an int"``."""
+    return _with_article(type(value))
+
+
+def _with_article(kind: type) -> str:
+    return f"{'an' if kind.__name__[0] in 'aeiouAEIOU' else 'a'} {kind.__name__}"
 
 
 def row_number(row: int) -> str:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, kind_of
 
 SOFTWARE = "vibrissa testbed"  # what pictures, films and clouds of points say that they are of
 _MARK = b"vibrissa"  # in what is written, but for tables, which begin with a word of their own
@@ -19,7 +19,7 @@ _guarded: ContextVar[bool] = ContextVar("guarded", default=False)
 
 def as_path(path: object, name: str) -> Path:
     if not isinstance(path, str | os.PathLike):
-        raise InputError(name, f"a {type(path).__name__}", "a path", "as 'folder/name'")
+        raise InputError(name, kind_of(path), "a path", "as 'folder/name'")
     return Path(path)
 
 

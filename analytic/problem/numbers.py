@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.numerics.arrays import Floats
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, kind_of
 
 LARGEST = 1e150  # its square is a number still, and so is its inverse
 
@@ -32,6 +32,8 @@ def within(
         kind = "positive" if low > 0 else "finite"
         if isinstance(value, str):
             remedy = "write a number: units are read in case files alone"
+        elif not isinstance(value, Real):  # one that looks like a number may be none
+            remedy = f"it is {kind_of(value)}: give a plain number"
         raise InputError(name, value, f"a {kind} number between {low:g} and {high:g}", remedy)
     return float(value)
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from analytic.numerics.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SCHEMA, SENSED
-from analytic.problem.errors import InputError, Place, near, require, row_number
+from analytic.problem.errors import InputError, Place, kind_of, near, require, row_number
 from analytic.problem.files import as_path
 from analytic.problem.support import (
     OfVibrissa,
@@ -346,7 +346,7 @@ def _frame(data: "pd.DataFrame | Mapping[str, ArrayLike]") -> "pd.DataFrame":
         return data
     allowed, remedy = "a DataFrame, or columns of one length by name", "as {'foot_x': [...], ...}"
     if not isinstance(data, Mapping):
-        raise InputError("readings", f"a {type(data).__name__}", allowed, remedy)
+        raise InputError("readings", kind_of(data), allowed, remedy)
     try:
         return pd.DataFrame(dict(data))
     except (ValueError, TypeError) as error:

@@ -112,30 +112,37 @@ def first_on_way(
     t = np.unique(np.concatenate([t, breaks[(breaks > reach[0]) & (breaks < reach[1])]]))
     p = np.linspace(*ends, _WAY)
     apart, s, ahead = _apart(contour, t, rest, poses.at(p[None, :]))
-    touching = ahead & (s <= 1)
-    left, right = (touching[:, 0] & (sign * apart[:, 0] < 0) for sign in (1, -1))
-    if left.any() and right.any():
+    later, at_once, _ = _crossings(apart.T, s.T, ahead.T)  # the contour is cut at one pose
+    if 0 in later:
         remedy = "start clear of the object, or farther away"
         raise InputError("start of the clamp's way", "across the object", "clear of it", remedy)
+    i, j, share = _crossings(apart, s, ahead)  # a place of it passes the vibrissa
+    # One that comes with its tip ahead cuts the contour before any place has passed it.
+    passed = np.concatenate([p[j] + share * (p[j + 1] - p[j]), p[later]])
+    if not passed.size:
+        return None
+    best = int(np.argmax(passed))
+    i, j = np.concatenate([i, at_once])[best], np.concatenate([j, later])[best]
+    near, at = (float(t[i]), float(passed[best])), s[i, j]
+    found = [_at_tip(contour, rest, poses, *near), _along(contour, rest, poses, *near, float(at))]
+    latest = near[1] + (p[1] - p[0])  # p falls; by then it touches
+    here = [one for one in found if one is not None and one.p > latest]
+    known = [one for one in here if reach[0] <= one.t <= reach[1]]
+    if not known:
+        allowed = f"such that it first touches the lower side of the object ({contour.label})"
+        what = "one that comes to its upper side or its end, or to it from behind"
+        remedy = "move the foot farther on under the object"
+        raise InputError("way of the clamp", what, allowed, remedy)
+    return max(known, key=lambda one: one.p)
+
+
+def _crossings(apart: Floats, s: Floats, ahead: Booleans) -> tuple[Integers, Integers, Floats]:
+    """Where, in the second index, something gets to the other side beside the vibrissa."""
     passes = (np.signbit(apart[:, 1:]) != np.signbit(apart[:, :-1])) & ahead[:, 1:] & ahead[:, :-1]
     i, j = np.nonzero(passes)
     share = apart[i, j] / (apart[i, j] - apart[i, j + 1])
     on = s[i, j] + share * (s[i, j + 1] - s[i, j]) <= 1
-    if not on.any():
-        return None
-    i, j, share = i[on], j[on], share[on]
-    passed = p[j] + share * (p[j + 1] - p[j])
-    best = int(np.argmax(passed))
-    near = float(t[i[best]]), float(passed[best])
-    at = s[i[best], j[best]]
-    found = [_at_tip(contour, rest, poses, *near), _along(contour, rest, poses, *near, float(at))]
-    known = [one for one in found if one is not None and reach[0] <= one.t <= reach[1]]
-    if not known:
-        allowed = f"such that it first touches the lower side of the object ({contour.label})"
-        what = "one that comes to its upper side or its end"
-        remedy = "move the foot farther on under the object"
-        raise InputError("way of the clamp", what, allowed, remedy)
-    return max(known, key=lambda one: one.p)
+    return i[on], j[on], share[on]
 
 
 def _apart(

@@ -188,6 +188,7 @@ def _agrees(
     return bool((rms(error) <= np.hypot(allowed, jumps)).all())
 
 
+_ANGULAR = "facets of a coarse mesh, or links too long for the object"
 _JUMPING = 0.5  # fraction of the disagreement's square that jumps from station to station
 _STEPPED = (0.5, 2.0)  # times the square that rounding to steps leaves, if they are the cause
 _WHOLE = 1e-3  # of a step; so near to a multiple of it
@@ -316,9 +317,9 @@ def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) 
         return f"noise: {size}; see `--noise auto`"
     free = found.judged["candidate"].phase == "free"
     if free.sum() < 2:
-        return f"facets of a coarse mesh, or noise: {size}"
+        return f"{_ANGULAR}, or noise: {size}"
     idle = np.stack([found.candidate.values(n)[free] for n in CLAMP_READINGS])
     resting = np.median(np.abs(idle / scale[:, None]), axis=1)
     if (resting > jumps / 3).all():
         return f"noise: {size}, and without contact they do too; see `--noise auto`"
-    return f"facets of a coarse mesh: {size}, but not without contact"
+    return f"{_ANGULAR}: {size}, but not without contact; --budget shows which"

@@ -57,7 +57,10 @@ class Resolved:
         # At its own stations: between them it is not known to a thousandth.
         within = (swept >= foot_x.min()) & (swept <= foot_x.max())
         known = np.stack([reference.values(name)[within] for name in CLAMP_READINGS])
-        miss = (between(swept[within], *solved) - known) / np.nanmax(np.abs(known), axis=1)[:, None]
+        miss = between(swept[within], *solved) - known
+        if not np.isfinite(miss).any(axis=1).all():
+            return None  # none of them is there
+        miss /= np.nanmax(np.abs(known), axis=1)[:, None]
         same = np.sqrt(np.nanmean(miss**2)) < _SAME
         return cls(case, points, foot_x, between(foot_x, *solved)) if same else None
 

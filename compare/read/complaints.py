@@ -69,7 +69,9 @@ def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()
                     return called(refused, place([*outer, *named]))
             return InputError(name, value, "usable", str(refused))
     allowed = in_our_words(first["msg"]).removeprefix("must be ")
-    return InputError(name, value, allowed, "change it")
+    quoted = isinstance(first["input"], str) and allowed.endswith("number")
+    remedy = "write it without quotes and without a unit" if quoted else "change it"
+    return InputError(name, value, allowed, remedy)
 
 
 def in_our_words(said: str) -> str:

@@ -251,9 +251,10 @@ def give_mass(spec: mujoco.MjSpec, layout: Layout, motion: Motion) -> None:
     # A weight by length is of a mass by length.
     thickness = 1.0 if any(layout.vibrissa.weight) else layout.thickness**2
     volumes = [stub, *(layout.lengths * thickness).tolist()]
-    capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
-    for capsule, volume in zip(capsules, volumes[-len(capsules) :], strict=True):
-        capsule.mass = MASS * volume
+    capsule, world = mujoco.mjtGeom.mjGEOM_CAPSULE, spec.worldbody.name  # there are the corners
+    capsules = [g for g in spec.geoms if g.type == capsule and g.parent.name != world]
+    for link, volume in zip(capsules, volumes[-len(capsules) :], strict=True):
+        link.mass = MASS * volume
     dampers = 2 * motion.damping_ratio / _FIRST
     drives = mujoco.mjtJoint.mjJNT_SLIDE
     bends = [j for j in spec.joints if j.type != drives and j.name not in _DRIVES]

@@ -30,6 +30,8 @@ _LITTLE = 1e-3  # of a step; a contact of 5e7 EI/L^3 is not lost then, and rest 
 _PLACES = 9  # of the rigid part at the clamp that are looked at
 _OVERLOOKED = 1e-6  # L; how deep they may be in the obstacle
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
+_BUCKLES = np.pi**2 / 4  # EI/L^2, of a column whose loaded end is free to go aside (Euler)
+_STRAIGHT = 0.01  # rad, L; a load across it that is a hundredth of that turns it as far
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Side.AHEAD, Side.AHEAD),
@@ -66,7 +68,8 @@ class Walk(Generic[Model]):
         self._dead_end: tuple[float, str] | None = None  # where no step leads on, and why
         self._smooth = True  # no step was taken in vain at this station and the last one
         vibrissa = model.layout.vibrissa
-        self._curved = any(vibrissa.weight) or not vibrissa.is_straight
+        leans = bool(np.any(self._poses.at(case.way).angle))
+        self._oblique = leans or any(vibrissa.weight) or not vibrissa.is_straight
         turn = model.obstacle.largest_curvature * model.layout.spacing
         self._sharp = turn > 2 * OF_CURVATURE
         self.snap_off: float | None = None
@@ -89,7 +92,8 @@ class Walk(Generic[Model]):
         self.doubt = self._advance(target, self.model.evaluations + self._budget)
         if self.doubt is None:
             self._budget = min(2 * self._budget, numerics.budget)
-            self._shown, self.doubt = self._state, self._lost or self._too_coarse()
+            self._shown = self._state
+            self.doubt = self._lost or self._too_coarse() or self._is_column()
         else:
             self._budget = max(self._budget // 2, numerics.least_budget)
             # The readings are those of the nearest that there is to a state at rest.
@@ -116,6 +120,19 @@ class Walk(Generic[Model]):
         near = () if layout.clamp_turns else model.obstacle.near(rigid, deep)
         if any(model.obstacle.clearance(rigid[i])[0] < deep for i in near):
             return "the object is in the rigid half of the first cell from the clamp"
+        return None
+
+    def _is_column(self) -> str | None:
+        """Whether it is pressed along its axis by more than it bears without giving way.
+
+        No joint of a straight one is out of balance then, however large the force is.
+        """
+        angles, clamp = self._state.angles, self.model.clamp()
+        load = math.hypot(clamp.force_x, clamp.force_y)
+        straight = turned(angles, np.zeros_like(angles)) < _STRAIGHT
+        along = straight and abs(clamp.moment_z) < _STRAIGHT * load
+        if along and load > _BUCKLES and self.model.contacts().loaded.any():
+            return "it stands straight under more than its buckling load, and would give way"
         return None
 
     def _advance(self, target: float, limit: int) -> str | None:
@@ -157,12 +174,12 @@ class Walk(Generic[Model]):
                 return f"not at rest after {self._budget} evaluations"
 
     def _lands_from_afar(self, p: float, state: State) -> bool:
-        """Whether a curved vibrissa comes to touch in a step so long that it may touch elsewhere.
+        """Whether an oblique vibrissa comes to touch in a step so long that it may touch elsewhere.
 
         Pressed in, it has more than one state; the sweep's is the one next to the first touch.
         """
         far = abs(p - self._p) > self._numerics.landing_step
-        return far and self._curved and not self._state.forces and bool(state.forces)
+        return far and self._oblique and not self._state.forces and bool(state.forces)
 
     def _onward(self, step: float, target: float) -> float:
         """A step on, or up to the target."""
@@ -323,18 +340,25 @@ class Walk(Generic[Model]):
         change = last.side, state.side
         passes = change in _NEIGHBOURS
         if change in _OF_A_CURVED_TIP:
-            rises = state.slope is not None and bool(state.slope > self.model.pose.angle)
-            passes = self._pokes(state) and (last.side is not Side.AHEAD or rises)
+            passes = self._pokes(state) and (last.side is not Side.AHEAD or self._runs_into(state))
         return state.settled and near and passes
 
+    def _runs_into(self, state: State) -> bool:
+        """Whether the tip touches where it comes from; elsewhere it went through the object."""
+        pose, rate = self.model.pose, self._poses.rate(np.array(self._p))
+        back_x = rate.foot_x - rate.angle * np.cos(pose.angle)
+        back_y = rate.foot_y - rate.angle * np.sin(pose.angle)
+        slope = state.slope
+        return slope is not None and bool(back_x * np.sin(slope) > back_y * np.cos(slope))
+
     def _pokes(self, state: State) -> bool:
-        """Whether a vibrissa that is curved at rest touches with its tip alone.
+        """Whether a vibrissa that is curved at rest or leans touches with its tip alone.
 
         Bent forward, it turns as it goes from one side of its axis to the other, and does not let
-        go. Coming from the right, it first touches where the contour rises.
+        go.
         """
         tip = len(self.model.layout.beads) - 1
-        return self._curved and state.forces.keys() == {tip}
+        return self._oblique and state.forces.keys() == {tip}
 
     def row(self) -> dict[str, Any]:
         """The readings of the state that the beam is in."""

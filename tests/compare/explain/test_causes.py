@@ -7,11 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Beam, Case, Readings, Sweep, named_case, polygon, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    SENSED,
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    polygon,
+    solve_sweep,
+)
 from compare import assert_agreement, compare
 from compare.align.offset import without_offset
 from compare.sense.noise import with_noise
-from mujoco_models import Settings
+from mujoco_models import Settings, simulate_sweep
 from tests.compare.planted import planted
 from tests.conftest import exact_sweep, simulated_sweep
 
@@ -141,6 +152,22 @@ def test_faults_planted_in_mujoco(name, settings, said):
     found = compare(exact_sweep(name), simulated_sweep(name, settings))
     assert not found.agrees
     assert found.likely is None if said is None else str(found.likely).startswith(said)
+
+
+def test_links_too_long_for_a_small_object_jump_as_facets_do():
+    """Past a circle of 0.05 L, 160 segments are enough, 20,000 points of the mesh are not."""
+    small = circle(0.0523, lowest=(-0.103, 0.307))
+    case = Case(profile=small, sweep=Sweep(30, direction="right"), clamp_angle=0.565)
+    found = compare(solve_sweep(case), simulate_sweep(case, Settings(segments=40)))
+    assert "or links too long for the object" in str(found.likely)
+
+
+def test_where_no_station_of_the_reference_lies_the_contour_explains_nothing():
+    """All in integers, the candidate's stations are -1, 0 and 1."""
+    exact = solve_sweep(Case(profile=circle(0.5, lowest=(0.0, 0.4)), sweep=Sweep(30)))
+    whole = Readings(exact.table[list(SENSED)].round().astype(int), exact.beam)
+    found = compare(exact, whole)
+    assert not found.agrees
 
 
 def test_who_agrees_is_suspected_of_nothing(exact, simulated):

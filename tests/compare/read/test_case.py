@@ -54,6 +54,7 @@ def test_what_is_wrong_in_one_of_several_objects_is_named_by_its_line(
     [
         ("[sweep]\nstart = -2.5\n", "line 6: sweep.start = -2.5: must be"),
         ("[mujoco]\nsegments = true\n", "line 6: mujoco.segments = True"),
+        ('[contact]\nfriction = "0.2"\n', "must be a number; write it without quotes and without"),
         ('[beam]\nlength = "9**9**9 m"\n', "line 6: beam.length = '9**9**9 m'"),
         ("[beam]\nlength = 0x" + "f" * 5000, "line 6 = a number of 309 digits or more"),
         ("x = " + "9" * 5000, "309 digits"),

@@ -14,5 +14,5 @@ def test_a_sound_model_passes_and_each_fault_is_a_line():
     title, fault = str(caught.value).splitlines()
     assert title == "sound-chain is not sound:"
     assert fault.startswith("  fault, EI: 0.000644, which is 11.1% more than stated (0.0005796)")
-    with pytest.raises(InputError, match="stated = a int"):
+    with pytest.raises(InputError, match="stated = an int"):
         assert_sound("sound-chain", 3)

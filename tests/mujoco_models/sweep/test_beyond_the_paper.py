@@ -153,6 +153,38 @@ def test_a_vibrissa_that_lies_down_on_its_other_side():
     assert largest_rms(exact, simulated) < 1e-3
 
 
+@pytest.mark.parametrize("tip_radius", [0.005, 0.002])
+def test_a_leaning_vibrissa_that_runs_head_on_into_the_object_is_followed(tip_radius):
+    """It gives way to either side and rubs along: neither is that a snap-off nor went it through.
+
+    The contour's slope at the first touch, 0.84, is less than the clamp leans, so that the tip is
+    pressed to the left.
+    """
+    case = Case(Beam(tip_radius=tip_radius), circle(1.0, (0.0, 0.45)), Sweep(16), clamp_angle=0.9)
+    exact, simulated = solve_sweep(case), simulate_sweep(case, Settings(segments=20))
+    assert set(simulated.table["status"]) == {"ok"}
+    assert simulated.snap_off is None  # the force falls to zero, and it is free
+    assert largest_rms(exact, simulated) < 2e-3  # of 20 segments; observed 1.0e-3
+
+
+def test_a_tip_that_changes_sides_on_a_facet_has_not_let_go():
+    """A facet at 0.833 rad under a vibrissa that leans by 0.841 rad is met all but head on."""
+    facets = [(0.0, 0.466), (0.122, 0.468), (0.375, 0.529), (0.591, 0.766)]
+    case = Case(profile=polygon(facets), sweep=Sweep(16), clamp_angle=0.8414852600986997)
+    simulated = simulate_sweep(case, Settings(segments=20))
+    assert (simulated.table["phase"] != "free").sum() > 4
+    assert simulated.snap_off is None
+
+
+def test_a_straight_column_beyond_its_buckling_load_is_not_at_rest():
+    """Newton's method finds it in balance under 4,545 EI/L^2, which was "ok"."""
+    up, none = np.linspace(-0.2, 0.15, 12), np.zeros(12)
+    case = Case(profile=circle(0.5, (0.0, 0.9)), sweep=ClampPath(none + 1e-4, up, none))
+    table = simulate_sweep(case, Settings(segments=20)).table
+    loaded = table["force_y"].abs() > 1.0  # bent aside, it bears less
+    assert loaded.any() and set(table["status"][loaded]) == {"unsettled"}
+
+
 def test_a_cone_past_corners_is_refused():
     square = polygon([(-0.3, 0.4), (0.3, 0.4), (0.3, 1.0), (-0.3, 1.0)])
     with pytest.raises(InputError, match=r"^beam\.tip_radius = 0\.002: .*sharp corners"):

@@ -20,6 +20,8 @@ from analytic import (
     Whisk,
     calibrate,
     catenary,
+    circle,
+    ellipse,
     find_events,
     named_case,
     parabola,
@@ -148,6 +150,16 @@ def test_out_and_back_lets_go_where_it_touched():
     assert events["first_contact"] + events["snap_off"] == pytest.approx(3.6, abs=1e-9)
 
 
+def test_a_tip_that_comes_head_on_touches():
+    """No place of the contour passes beside it: it went through the object, free and "ok"."""
+    up, none = np.linspace(-0.2, 0.15, 12), np.zeros(12)
+    case = Case(profile=circle(0.5, (0.0, 0.9)), sweep=ClampPath(none + 0.1, up, none))
+    readings, _, touching = assert_confirmed(case, integrated=1e-10, seen=1e-9)
+    first = 1.4 - np.sqrt(0.505**2 - 0.1**2) - 1  # of the foot, where the round tip touches
+    assert readings.provenance["events"]["first_contact"] == pytest.approx(first + 0.2, abs=1e-9)
+    np.testing.assert_array_equal(touching, up > first)
+
+
 @pytest.mark.parametrize("name", WHISK_CASE_NAMES)
 def test_named_cases_start_and_end_free(name):
     readings = solve_sweep(named_case(name))
@@ -176,6 +188,10 @@ def test_readings_keep_their_way_in_a_file(tmp_path):
     assert Readings.of(again.mirrored().table).runs_right
 
 
+# With its other side it lies down on the object; it was free in it, and "ok".
+BEHIND = ClampPath([-0.108, -0.096, -0.08, -0.032], [-0.035, 0.002, 0.052, 0.244],
+                   [-0.402, -0.316, -0.195, 0.352])  # fmt: skip
+
 BAD = {
     "start of the clamp's way": lambda: Case(sweep=Whisk(0.6, 0.0, 1.0)),
     "whisk.stop": lambda: Whisk(0.0, 0.5, 0.5),
@@ -184,6 +200,9 @@ BAD = {
     r"clamp path: foot_y\[1\]": lambda: ClampPath([1, 2], [0, np.inf], [0, 0]),
     "clamp path = the same": lambda: ClampPath([1, 1], [0, 0], [0, 0]),
     "clamp_angle = 0.1": lambda: Case(sweep=Whisk(0.6, -1.2, 1.0), clamp_angle=0.1),
+    "way of the clamp = .* from behind": lambda: Case(
+        profile=ellipse((0.19, 0.75), (0, 0.49)), sweep=BEHIND
+    ),
     "height of the lowest point": lambda: Case(sweep=ClampPath([2, 1], [0, 0.3], [0, 0])),
 }
 
