@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS
 from analytic.from_clamp.noise import largest, reading_noise, scatter
-from analytic.numerics.arrays import Floats, Integers
+from analytic.numerics.arrays import Booleans, Floats, Integers
 from compare.explain.causes import slopes
 from compare.explain.one_or_two import CONVINCING, one_or_two
 from compare.judge.allowance import NoiseAllowance
@@ -143,17 +143,24 @@ def _short(found: Measurement) -> list[str]:
 
 
 def _ended(found: Measurement, limits: Tolerances) -> str | None:
-    """That the candidate lets go early, where that is all that is wrong with it."""
-    ends, (size, unit) = found.snap_off, found.reference.running_unit
-    if ends.reference is None or ends.candidate is None:
+    """That the candidate lets go early, late or not at all, if that is all that is wrong."""
+    ends, (size, unit), name = found.snap_off, found.reference.running_unit, found.reference.running
+    if ends.reference is None or "snap_off" in (*found.beyond(), *found.not_trusted()):
         return None
-    early = direction(found.reference) * (ends.reference - ends.candidate) / size
-    if early <= limits.snap_off + ends.uncertainty / size:
+    way, at = direction(found.reference), found.candidate.running_values
+    end = way * np.inf if ends.candidate is None else ends.candidate
+    early = way * (ends.reference - end) / size
+    if abs(early) <= limits.snap_off + ends.uncertainty / size:
         return None
-    return (
-        f"the contact ends early, at {found.reference.running} = {ends.candidate / size:.4g} "
-        f"{unit} instead of {ends.reference / size:.4g} {unit}, and agrees up to there"
-    )
+    after = (way * at > way * ends.reference) & (way * at < way * end)
+    if (found.judged["candidate"].phase[after] == "free").any():
+        return None
+    due = f"{name} = {ends.reference / size:.4g} {unit}"
+    if ends.candidate is None:
+        return f"the contact does not end: the clamp stays loaded beyond {due}, and agrees before"
+    place = f"{name} = {end / size:.4g} {unit}"
+    when = "early" if early > 0 else "late"
+    return f"the contact ends {when}, at {place} instead of {due}, and agrees up to there"
 
 
 def _lone(
@@ -194,6 +201,7 @@ _STEPPED = (0.5, 2.0)  # times the square that rounding to steps leaves, if they
 _WHOLE = 1e-3  # of a step; so near to a multiple of it
 _STEPS = 200  # at most, over a reading: of more, the rounding is no cause of anything
 _OFTEN = 0.2  # of the readings in contact: so many that repeat the one before are no chance
+_STANDS = 5  # stations one after the other that repeat the one before: no chance, either
 _FRESH = 0.3  # times what repeated ones are off, new ones are at most
 _HUM = 0.8  # fraction of the disagreement's square that one frequency must explain
 _TURNS = 8  # periods at least over the sweep: what is slower is a model's own error
@@ -233,19 +241,39 @@ def _stepped(found: Measurement, error: Floats, scale: Floats) -> str | None:
 
 def _held(found: Measurement, stations: Integers, error: Floats) -> str | None:
     """Readings that are new at some stations only, if those agree."""
-    rows = np.stack([found.candidate.values(name) for name in CLAMP_READINGS])
-    same = np.append(False, (np.diff(rows) == 0).all(axis=0))
+    still = np.stack(
+        [np.append(False, np.diff(found.candidate.values(n)) == 0) for n in CLAMP_READINGS]
+    )
     loaded = found.judged["candidate"].phase != "free"
-    often = float(np.mean(same[loaded]))
-    same = same[stations]
-    if often < _OFTEN or not same.any() or same.all():
+    often, name = float(np.mean(np.all(still[:, loaded], axis=0))), found.reference.running
+    stuck = np.array([_run(row & loaded) for row in still])
+    same = np.asarray(still.all(axis=0) if often >= _OFTEN else stuck.any(axis=0))
+    held = same[stations]
+    if not held.any() or held.all():
         return None
-    if rms(error[:, ~same]).max(initial=0.0) > _FRESH * rms(error[:, same]).max(initial=0.0):
+    if rms(error[:, ~held]).max(initial=0.0) > _FRESH * rms(error[:, held]).max(initial=0.0):
         return None
+    if often < _OFTEN:
+        readings = " and ".join(n for n, s in zip(CLAMP_READINGS, stuck, strict=True) if s.any())
+        ends = found.candidate.running_values[np.flatnonzero(same)[[0, -1]]]
+        size, unit = found.reference.running_unit
+        return (
+            f"readings stand still: {readings} at {same.sum()} stations, {name} = "
+            f"{ends[0] / size:.4g} to {ends[1] / size:.4g} {unit}, while {name} goes on"
+        )
     return (
         f"readings are held: {often:.0%} of those in contact repeat the ones before while "
-        f"{found.reference.running} goes on; whatever writes them is slower than the rows"
+        f"{name} goes on; whatever writes them is slower than the rows"
     )
+
+
+def _run(same: Booleans) -> Booleans:
+    """The longest row of stations that repeat the one before, if it is no chance."""
+    places = np.arange(len(same))
+    counts = places - np.maximum.accumulate(np.where(same, -1, places))
+    last = int(np.argmax(counts))
+    long = counts[last] >= _STANDS
+    return np.asarray((last - counts[last] < places) & (places <= last) & long)
 
 
 def _humming(found: Measurement, error: Floats) -> str | None:

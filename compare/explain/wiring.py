@@ -12,7 +12,7 @@ from analytic.numerics.arrays import Floats
 from compare.explain.fit import fitted
 
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
-_FURTHEST = 0.5  # L; farther off a sensor does not sit
+_FURTHEST = 1.1  # L; a simulator may take moments about the straight vibrissa's tip
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
 _FOLLOWS = 0.5  # fraction of a small reading's variance that follows the load, if it is alive
 _ROTATION = np.radians(60)  # beyond, it is a swap of axes

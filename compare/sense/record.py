@@ -30,7 +30,7 @@ class Record:
 
     # Shape (stations,); A sensed value is no finite number, and no status explains why.
     missing: Booleans
-    repeated: Booleans  # shape (stations,); All four sensed values are those of the station before
+    repeated: Booleans  # shape (stations,); All four sensed values are those of a station before
     # Shape (stations,); A clamp reading is exactly zero, though it is not on either side.
     dropped: Booleans
     # Shape (stations,); A clamp reading is at its extreme, as many others are: it was cut off
@@ -61,7 +61,7 @@ class Record:
             ("missing", "lack a number"),
             ("dropped", "are filled with zeros amid contact"),
             ("clipped", f"are cut off at the extreme of {' and '.join(self.where_clipped)}"),
-            ("repeated", "repeat the row before"),
+            ("repeated", "repeat a row before"),
         ):
             count = int(getattr(self, name).sum())
             if count:
@@ -92,7 +92,11 @@ def inspect_record(readings: Readings) -> Record:
     failed = np.zeros(len(values), dtype=bool)
     if "status" in readings.table:
         failed = ~says(readings.table["status"], "ok")
-    repeated = np.append(False, (values[1:] == values[:-1]).all(axis=1)) & finite
+    repeated = np.array(finite)
+    repeated[np.unique(values, axis=0, return_index=True)[1]] = False
+    same = np.append(False, (values[1:] == values[:-1]).all(axis=1))
+    # The jitter of a foot's reading repeats no row under load.
+    led_back = repeated & ~same & (values[:, 1:] != 0).any(axis=1)
     dropped = np.zeros(len(values), dtype=bool)
     clipped = np.zeros(len(values), dtype=bool)
     cut = []
@@ -119,14 +123,19 @@ def inspect_record(readings: Readings) -> Record:
         where_clipped=tuple(cut),
         gaps=int((steps > _WIDE * median).sum()) if median > 0 else 0,
         widest=float(steps.max()),
-        holes=_holes(steps),
+        holes=_holes(np.where(direction(readings) * np.diff(foot_x) > 0, steps, 0.0)),
         column=readings.running,
-        retreats=retreats(readings),
+        retreats=retreats(readings, by_jitter=not led_back.any()),
     )
 
 
 def check_size(which: str, sweep: Readings) -> None:
-    """Refuse numbers whose powers would overflow."""
+    """Refuse numbers whose powers would overflow, and a sweep that does not move."""
+    at, name = sweep.running_values, sweep.running
+    if len(at) > 1 and np.ptp(at) == 0:
+        remedy = f"write where the sweep is at each station into {name}"
+        raise InputError(f"{name} of the {which} ({sweep.source})", f"{at[0]:g} at all stations",
+                         "another one at each", remedy)  # fmt: skip
     for name, unit in zip(SENSED, units(sweep.beam, SENSED).tolist(), strict=True):
         largest = np.abs(sweep.values(name)[sweep.trusted]).max(initial=0.0)
         if not largest < _LARGEST * unit:
@@ -197,12 +206,12 @@ def _holes(steps: Floats) -> dict[int, int]:
     return {int(i): round(float(steps[i] / beside[i])) - 1 for i in wide}
 
 
-def retreats(readings: Readings) -> int:
+def retreats(readings: Readings, *, by_jitter: bool = True) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
     x = direction(readings) * readings.running_values
     median = float(np.median(np.abs(np.diff(x))))
     back = float(np.max(np.maximum.accumulate(x) - x))
     least, most = (fraction * float(np.ptp(x)) for fraction in _BACK)
-    if back <= min(max(_JITTER * median, least), most):
+    if by_jitter and back <= min(max(_JITTER * median, least), most):
         return 0
     return int((np.diff(x) < 0).sum())

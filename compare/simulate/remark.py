@@ -23,6 +23,8 @@ HARDEST_RUBBING = 7e3
 EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")
 """Integrators that are explicit in the springs."""
 
+_SHOWN = 4  # edits of a remark
+
 
 @dataclass(frozen=True)
 class Remark:
@@ -34,5 +36,8 @@ class Remark:
     edits: tuple[Edit | Insert, ...] = ()  # that fix it
 
     def __str__(self) -> str:
-        said = [self.remedy, *(f"set {edit}" for edit in self.edits if f"{edit}")]
-        return "; ".join(filter(None, (f"{self.kind}, {self.subject}: {self.text}", *said)))
+        said = [f"set {edit}" for edit in self.edits if f"{edit}"]
+        if len(said) > _SHOWN:
+            said[_SHOWN - 1 :] = [f"and {len(said) - _SHOWN + 1} more, which --write sets"]
+        said = [f"{self.kind}, {self.subject}: {self.text}", self.remedy, *said]
+        return "; ".join(filter(None, said))

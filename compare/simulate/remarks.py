@@ -32,6 +32,7 @@ from mujoco_models.inspect.unsolved import STRICT
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _LENGTH = 0.005  # relative; forces go with 1/L^2
+_FEW = 4  # joints that are off, each with a line of its own
 _JOINT = 0.05  # relative; one of twenty that is so far off moves readings by 0.25 per cent
 _SAG = 2e-3  # L; as a contact that is so far off
 _WAYS: tuple[tuple[Literal["fault", "note"], str], ...] = (
@@ -117,17 +118,26 @@ def _single_joints(found: MeasuredBeam, off: Floats) -> Iterator[Remark]:
     """Joints that are not as their neighbours, and those that are missing between two."""
     missing: dict[str, None] = {}
     usual = np.median([len(joint.rigid) for joint in found.joints])  # each link may have a frame
-    for i in (np.flatnonzero(np.abs(off[1:-1]) > _JOINT) + 1).tolist():
+    odd = (np.flatnonzero(np.abs(off[1:-1]) > _JOINT) + 1).tolist()
+    right = {i: 1 / (found.joints[i].compliance * (1 + off[i])) for i in odd}
+    if len(odd) > max(_FEW, len(off) / 2):
+        worst = max(odd, key=lambda i: abs(off[i]))
+        yield Remark("fault", "uniformity", f"{len(odd)} of {len(off)} joints are off a smooth "
+                     f"course of EI, that of {found.joints[worst].name!r}, at s = "
+                     f"{found.joints[worst].s / found.length:.2f} L, by {abs(off[worst]):.0%}: EI "
+                     "steps, or jumps from joint to joint", "give them a smooth course",
+                     treatment.stiffened(found, right))  # fmt: skip
+        return
+    for i in odd:
         joint, stiffer = found.joints[i], off[i] > 0
         rigid = [one.rigid for one in found.joints[i - 1 : i + 1] if len(one.rigid) > usual]
         if stiffer and rigid:
             missing |= dict.fromkeys(sum(rigid, ()))
             continue
-        right = treatment.stiffened(found, {i: 1 / (joint.compliance * (1 + off[i]))})
         yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
                      f"{joint.s / found.length:.2f} L, is {abs(off[i]):.0%} too "
-                     f"{'stiff' if stiffer else 'soft'} beside its neighbours", edits=right
-                     )  # fmt: skip
+                     f"{'stiff' if stiffer else 'soft'} beside its neighbours",
+                     edits=treatment.stiffened(found, {i: right[i]}))  # fmt: skip
     for name in missing:
         yield Remark("fault", "uniformity", f"{name!r} has no joint, and two links are one",
                      "give it one as its neighbours have")  # fmt: skip
@@ -185,7 +195,10 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     worst = int(np.argmax(np.abs(radii - wanted_radii)))
     if abs(radii[worst] - wanted_radii[worst]) > RADIUS * found.length:
         yield Remark("fault", "radius", f"{radii[worst]:.4g} instead of {wanted_radii[worst]:.4g}, "
-                     f"at s = {middles[worst] / found.length:.2f} L")  # fmt: skip
+                     f"at s = {middles[worst] / found.length:.2f} L", "set the radius of its edges"
+                     if found.springs == "flex" else "", treatment.evened(found, dict(zip(
+                         found.geoms, (radii - wanted_radii).tolist(), strict=True)))
+                     )  # fmt: skip
 
 
 def _surface(found: MeasuredBeam) -> Iterator[Remark]:

@@ -14,6 +14,8 @@ _POINTS = 2001  # of an integral along the beam
 _BESIDE = 0.01  # of the first joint's place
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
 _LEAST_COMPLIANCE = 0.01  # relative to a cell; what is left of a smooth course of EI
+_STRAIGHT = 1e-6  # of the radius; a taper by less is the fit's rounding
+_STEPS = 2  # to a thicker stretch and back; beads have more
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
 _ACROSS = np.array(np.pi / 2)  # slope of a contour that presses along x
 
@@ -136,21 +138,21 @@ def contact_stiffness(found: MeasuredBeam) -> float:
 
 
 def radii(found: MeasuredBeam) -> tuple[float, float]:
-    """At the clamp and at the tip, of what touches; beads on a thinner rod are one cylinder.
+    """At the clamp and at the tip, of what touches: a straight course, of which some geoms are off.
 
-    Of a taper in steps, which has these radii in the middle of its first and its last geom.
+    Beads on a thinner rod are one cylinder, and so is what gets thicker. Of a taper in steps, each
+    is right in its middle.
     """
     own = [geom for geom in found.geoms if geom.meets] or [found.geoms[0]]
-    if len(own) > 2 and own[-2].radius <= own[0].radius < own[-1].radius:
-        own = own[:-1]  # a bead at the tip alone is no rod's surface
-    first, last = own[0], own[-1]
-    if last.radius > first.radius:
-        return (max(geom.radius for geom in own),) * 2
-    if last.radius == first.radius or last.middle <= first.middle:
-        return first.radius, last.radius
-    slope = (last.radius - first.radius) / (last.middle - first.middle)
-    tip = last.radius + slope * (found.length - last.middle)
-    return first.radius - slope * first.middle, tip if tip > 0 else last.radius
+    radius, share = np.array([(geom.radius, geom.middle / found.length) for geom in own]).T
+    beads = radius[-1] > radius[0] and np.diff(radius > radius.min()).sum() > _STEPS
+    if beads or np.ptp(share) == 0:
+        return (float(radius.max()),) * 2
+    slope, start = least_deviations(np.vander(share, 2), radius)
+    if slope < -_STRAIGHT * start:
+        return float(start), float(start + slope if start + slope > 0 else radius[-1])
+    most = start if slope < _STRAIGHT * start else radius.max()
+    return (float(radius[np.argmin(np.abs(radius - most))]),) * 2
 
 
 def unevenness(found: MeasuredBeam) -> dict[Geom, float]:

@@ -10,6 +10,7 @@ from compare.simulate.remark import HARDEST_RUBBING
 from compare.simulate.rigidity import as_intended, flexibility, joint_arms, moving
 from mujoco_models.fix.edit import Edit, Insert, number
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
+from mujoco_models.inspect.touching import LEAST_FRICTION
 
 HARD = "0.9999 0.9999 0.001"
 """MuJoCo's largest impedance, of what should not give way."""
@@ -72,7 +73,7 @@ def touching(found: MeasuredBeam, friction: float) -> tuple[Edit, ...]:
 
 def frictionless(found: MeasuredBeam) -> tuple[Edit, ...]:
     """Friction that nobody stated goes; what was stated gets a cone that rubs as it should."""
-    if max(geom.friction for geom in found.geoms) == 1:
+    if max(geom.friction for geom in found.geoms) in (1, LEAST_FRICTION):
         return contacts(found, condim="1")
     return (Edit("option", (("cone", "elliptic"), ("impratio", "100"))),)
 

@@ -234,7 +234,7 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
         leads_there = ends.min() < _ALIGNED * length and along > _GOES_ON * np.ptp(ends)
         if leads_there or np.abs(aside).max() < _ALIGNED * length:
             rigid.append(geom)
-    return rigid + found
+    return ([geom for geom in rigid if _collides(model, geom)] or rigid) + found
 
 
 def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
@@ -244,7 +244,7 @@ def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
     longer than a half of the longest.
     """
     geoms = np.flatnonzero(model.body_weldid[model.geom_bodyid] == body)
-    collide = (model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)
+    collide = np.array([_collides(model, int(geom)) for geom in geoms], dtype=bool)
     slender = np.isin(model.geom_type[geoms], _SLENDER)
     ends = np.reshape([axis_of(model, int(geom)) for geom in geoms], (-1, 2, 3))
     long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
@@ -252,6 +252,10 @@ def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
         if mine.any():
             return [int(geom) for geom in geoms[mine]]
     return [int(geom) for geom in geoms[2 * long >= long.max(initial=0)]]
+
+
+def _collides(model: mujoco.MjModel, geom: int) -> bool:
+    return bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
 
 
 def _geoms(model: mujoco.MjModel, text: str) -> list[int]:

@@ -15,6 +15,8 @@ from mujoco_models.inspect.probe import Probe
 from mujoco_models.inspect.rod import Rod
 from mujoco_models.model.solref import impedance_at, pushes
 
+LEAST_FRICTION = float(mujoco.mjMINMU)
+"""What MuJoCo takes for none, where condim is above 1."""
 _NOTHING = 1e-200
 
 
@@ -117,9 +119,14 @@ def _geom(
         time_constant=float(solref[0]) if solref[0] > 0 else math.nan,
         decay=decay,
         damping_ratio=ratio,
-        friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
+        friction=max(float(stated("friction")[0]), _least(model)) if stated("condim") > 1 else 0.0,
         margin=float(stated("margin")),
     )
+
+
+def _least(model: mujoco.MjModel) -> float:
+    """A pyramid of so little makes contacts 1/friction^2 times as hard; an ellipse is harmless."""
+    return LEAST_FRICTION if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL else 0.0
 
 
 def _along(nodes: Floats, points: Floats) -> tuple[Floats, Floats]:

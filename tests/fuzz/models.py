@@ -211,6 +211,7 @@ MISTAKES: dict[str, Callable[[Model], None]] = {
     "uniformity": _changed(odd=4),
     "contact, soft": _changed(solref=20.0),
     "contact, friction": _changed(contact='solimp="0.98 0.98 0.001"'),
+    "contact, slippery": _changed(contact='friction="0" solimp="0.98 0.98 0.001"'),
     "contact, nothing": _changed(contact='condim="1" contype="0" conaffinity="0"'),
     "time step, long": _changed(timestep=0.2),
     "time step, explicit": _changed(integrator="Euler"),

@@ -187,6 +187,11 @@ def displaced(sweep: Readings, rng: np.random.Generator) -> Readings:
     return columns(sweep, moment_z=sweep.values("moment_z") + lever * sweep.values("force_x"))
 
 
+def about_the_tip(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """A simulator's moment, about where the tip of the straight vibrissa is."""
+    return columns(sweep, moment_z=sweep.values("moment_z") - sweep.values("force_x"))
+
+
 def all_units(sweep: Readings, rng: np.random.Generator) -> Readings:
     factor = rng.choice([1000.0, 9.80665, 1 / 9.80665])
     return each(lambda values, rng: factor * values)(sweep, rng)
@@ -233,6 +238,12 @@ def repeated(count: int, rng: np.random.Generator) -> np.ndarray:
     return np.sort(np.append(np.arange(count), rng.choice(count, count // 10, False)))
 
 
+def block_again(count: int, rng: np.random.Generator) -> np.ndarray:
+    """A twentieth of the rows, amid contact, is written twice: a log that was appended to."""
+    end = int(rng.uniform(0.4, 0.6) * count)
+    return np.r_[:end, end - count // 20 : count]
+
+
 def lost(value: float) -> Sensor:
     """Amid contact, 5 to 15 % of the sweep."""
 
@@ -251,6 +262,27 @@ def ended(sweep: Readings, rng: np.random.Generator) -> Readings:
     last = touching[int(rng.uniform(0.6, 0.9) * len(touching))]
     there = np.arange(len(sweep.table)) < last
     return each(lambda values, rng: np.where(there, values, 0.0))(sweep, rng)
+
+
+def held_on(least: float, most: float) -> Sensor:
+    """The vibrissa does not let go for that fraction of the stations after it should."""
+
+    def made(sweep: Readings, rng: np.random.Generator) -> Readings:
+        force = np.abs(sweep.values("force_y"))
+        row, last = np.arange(len(force)), np.flatnonzero(force > 0.1 * force.max())[-1]
+        holds = (row > last) & (row <= last + 2 + rng.uniform(least, most) * len(row))
+        return each(lambda values, rng: np.where(holds, values[last], values))(sweep, rng)
+
+    return made
+
+
+def standing(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """Amid contact all readings, or one, stay as they are for a tenth of the sweep."""
+    row = np.arange(len(sweep.table))
+    begin = int(rng.uniform(0.3, 0.5) * len(row))
+    holds = (row >= begin) & (row < begin + len(row) // 10)
+    which = one if rng.random() < 0.5 else each
+    return which(lambda values, rng: np.where(holds, values[begin], values))(sweep, rng)
 
 
 SOFT = 8.0  # EI/L; a clamp that is known to give way
@@ -332,7 +364,8 @@ MISTAKES: dict[str, Mistake] = {
     "reversed rows": Mistake("rows reversed", recorded=rows(lambda n, rng: np.arange(n)[::-1])),
     "foot_x backwards": Mistake("foot_x counts the other way", recorded=_BACKWARDS),
     "shuffled rows": Mistake("rows out of order", recorded=rows(lambda n, rng: rng.permutation(n))),
-    "repeated rows": Mistake("repeat the row before", recorded=rows(repeated)),
+    "repeated rows": Mistake("repeat a row before", recorded=rows(repeated)),
+    "block of rows again": Mistake("repeat a row before", recorded=rows(block_again)),
     "gap": Mistake("lack a number", recorded=lost(np.nan)),
     "dropout": Mistake("filled with zeros", recorded=lost(0.0)),
     "spikes": Mistake("single stations", recorded=one(spiked)),
@@ -367,6 +400,10 @@ MISTAKES: dict[str, Mistake] = {
     "object raised": Mistake("height of the object", raised),
     "object size": Mistake("size of the object", sized),
     "contact ends early": Mistake("ends early", recorded=ended),
+    "contact ends late": Mistake("ends late", recorded=held_on(0.0, 0.02)),
+    "contact does not end": Mistake("does not end", recorded=held_on(1.0, 1.0)),
+    "readings stand still": Mistake("stand still", recorded=standing),
+    "moment about the tip": Mistake("along the vibrissa off the clamp", sensed=about_the_tip),
     "whole first cell": Mistake(
         "half a cell",
         lambda case, rng: solve_sweep(

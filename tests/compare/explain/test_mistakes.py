@@ -11,12 +11,16 @@ CHEAP = (
     "foot_x backwards",
     "shuffled rows",
     "repeated rows",
+    "block of rows again",
     "gap",
     "dropout",
     "spikes",
     "saturation",
     "no contact",
     "contact ends early",
+    "contact ends late",
+    "contact does not end",
+    "readings stand still",
 )
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from compare.sense.noise import with_noise
-from compare.sense.record import inspect_record, without_dropouts
+from compare.sense.record import check_size, inspect_record, without_dropouts
 from tests.compare.synthetic import changed
 from tests.conftest import exact_sweep
 
@@ -88,3 +88,9 @@ def test_dropouts_become_gaps(noisy):
     assert np.flatnonzero(np.isnan(found.values("force_y"))).tolist() == list(range(60, 110, 5))
     assert found.provenance["rows"]["dropped"] == 10
     assert without_dropouts(noisy) is noisy
+
+
+def test_a_foot_that_never_moves_is_refused(noisy):
+    """It was compared, as rows that repeat others."""
+    with pytest.raises(InputError, match=r"foot_x of the candidate .* = 0.5 at all stations"):
+        check_size("candidate", changed(noisy, foot_x=0.5))

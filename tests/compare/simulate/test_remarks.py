@@ -398,3 +398,25 @@ def test_a_sensor_that_reads_nothing_is_not_where_the_load_goes(tmp_path):
     said = [str(one) for one in Inspection(inspect_model(path, force="F", torque="T")).faults]
     assert len(said) == 2
     assert all("is not between foot and vibrissa; put its site there" in one for one in said)
+
+
+@pytest.mark.parametrize("thick", [(18, 19, 20), (0, 1, 2), (10,)])
+def test_the_few_geoms_that_are_thicker_are_named_and_not_the_others(tmp_path, thick):
+    """A thick tip, as last, was the course, and 18 of 21 thin geoms were to become as thick."""
+    names = [f'name="whisker-geom{i}" ' for i in thick]
+    path = Chain().write(tmp_path, *((name, f'{name}size="0.015" ') for name in names))
+    found = Inspection(inspect_model(path))
+    (fault,) = [fault for fault in found.faults if fault.subject == "radius"]
+    assert "thicker than a straight course from 0.005 to 0.005" in str(fault)
+    assert all(dict(edit.attributes)["size"].startswith("0.005 ") for edit in fault.edits)
+    assert sorted(n for edit in fault.edits for n in edit.numbers) == list(thick)
+
+
+def test_a_step_of_rigidity_is_one_line_and_not_one_a_joint(tmp_path):
+    """A half with springs half as stiff: 16 joints were each said to be unlike its neighbours."""
+    path = Chain(stiffer=dict.fromkeys(range(11, 21), 0.5)).write(tmp_path)
+    (fault,) = [
+        one for one in Inspection(inspect_model(path)).faults if one.subject == "uniformity"
+    ]
+    assert re.search(r"1\d of 20 joints are off a smooth course of EI", str(fault))
+    assert "more, which --write sets" in str(fault)

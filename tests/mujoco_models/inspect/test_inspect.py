@@ -185,6 +185,15 @@ def test_what_is_only_seen_is_no_part_of_it(tmp_path, touches):
     assert found.length == pytest.approx(1)
 
 
+def test_what_is_only_seen_on_the_rigid_first_link_is_no_part_of_it(tmp_path):
+    """A pair of a visual and a colliding capsule was said to meet no object."""
+    first = '<geom name="whisker-geom0" fromto="0 0 0 0 0.025 0"'
+    seen = '<geom fromto="0 0 0 0 0.025 0" contype="0" conaffinity="0" mass="0"/>'
+    found = measured(tmp_path, Chain(), (first, seen + first))
+    assert [geom.name for geom in found.geoms[:2]] == ["whisker-geom0", "whisker-geom1"]
+    assert all(geom.meets for geom in found.geoms)
+
+
 @pytest.mark.parametrize(
     ("shape", "begins"),
     [
