@@ -15,6 +15,7 @@ _BESIDE = 0.01  # of the first joint's place
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
 _LEAST_COMPLIANCE = 0.01  # relative to a cell; what is left of a smooth course of EI
 _STRAIGHT = 1e-6  # of the radius; a taper by less is the fit's rounding
+_MUCH = 0.5  # of what a course from end to end leaves, some of its geoms are off
 _STEPS = 2  # to a thicker stretch and back; beads have more
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
 _ACROSS = np.array(np.pi / 2)  # slope of a contour that presses along x
@@ -148,7 +149,13 @@ def radii(found: MeasuredBeam) -> tuple[float, float]:
     beads = radius[-1] > radius[0] and np.diff(radius > radius.min()).sum() > _STEPS
     if beads or np.ptp(share) == 0:
         return (float(radius.max()),) * 2
-    slope, start = least_deviations(np.vander(share, 2), radius)
+    ends = [np.argmin(share), np.argmax(share)]
+    courses = (
+        np.polyfit(share[ends], radius[ends], 1),
+        least_deviations(np.vander(share, 2), radius),
+    )
+    beside, least = (float(np.abs(np.polyval(one, share) - radius).sum()) for one in courses)
+    slope, start = courses[int(least < beside * _MUCH)]  # steps are no geoms that are off
     if slope < -_STRAIGHT * start:
         return float(start), float(start + slope if start + slope > 0 else radius[-1])
     most = start if slope < _STRAIGHT * start else radius.max()
