@@ -45,6 +45,8 @@ _GUESSED = 1e-5  # the same without friction, where a state needs no other one
 _NEARLY = 1e-9  # of such a state's equations
 _UP_TO_RELEASE = 0.999  # of the way to where a tip, that a body can only push, is straight
 _SHARE = 1e-15  # of a panel, to which a place on it is enclosed
+FAINT = 1e-2
+"""EI/L^2; rounding leaves no direction of so little friction, and readings hardly any of it."""
 _ELSEWHERE = 1e-6  # of friction, beside the curve
 _GONE = 16.0  # e-folds: rounding of 1e-16 of friction's direction is 1e-9, and goes on growing
 _AT_REST = 1e-15  # of the equations, by the extent
@@ -204,6 +206,8 @@ class Panel(NamedTuple):
         """Logarithm of how much another direction of friction has grown, up to a share of it."""
         if not self.law.rubs:
             return 0.0
+        if min(self.states[point].contact.force for point in _LOOKED_AT) < FAINT:
+            return so_far
         asides = np.array([self.aside(point) for point in _LOOKED_AT])
         asides *= np.sign(asides @ asides[0])[:, None]
         beside = [self.beside(*each) for each in zip(_LOOKED_AT, asides, strict=True)]

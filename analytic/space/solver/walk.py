@@ -11,11 +11,11 @@ from analytic.space.problem.path import StraightVibrissa
 from analytic.space.solver.branch import LAST, LOOSE, NOTED, Branch, Held
 from analytic.space.solver.contact import Scene
 from analytic.space.solver.hop import DependsOnMotion, landing
+from analytic.space.solver.panel import FAINT
 
 _CLOSE = 1e-12  # L of the way: a vibrissa that has just come clear does not touch
 _BEYOND = 1e-8  # L, of the foot, where it lands: where it slips off is known to 2e-9 L
 _BESIDE = 1e-6  # L, of the foot: whether it goes away from the body
-_FAINT = 1e-2  # EI/L^2; where rounding leaves no direction of so little friction, it is released
 
 
 class Walked(NamedTuple):
@@ -90,7 +90,7 @@ class Walk:
             following = self._branch.after(stretch)
             if following is None or following.astray == np.inf:
                 at, last = stretch.last.travel, stretch.last
-                if stretch.event not in LAST and last.contact.force < _FAINT and self._leaves(at):
+                if stretch.event not in LAST and last.contact.force < FAINT and self._leaves(at):
                     stretch = stretch._replace(event="release")
                 if stretch.event == "release":
                     at = max(at, self._way.next_clear(at) or at)
