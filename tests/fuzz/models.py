@@ -343,7 +343,8 @@ def _hidden(model: Model) -> set[str]:
         hidden |= {"force sensor", "foot", "solver"}
     if model.links > _MANY:  # of so light ones limits give way by more than a sweep bends them
         hidden |= {"limits"}
-    hidden |= {"solver"} if re.search("contact|damping|step|none|weak", str(model.planted)) else set()
+    if re.search("contact|damping|step|none|weak", str(model.planted)):
+        hidden |= {"solver"}
     if "flags, constraint" in model.planted:
         hidden |= {"solver", "contact", "time step", "limits", "friction in joints"}
     return hidden
