@@ -123,11 +123,8 @@ class Branch:
             state = state_of(scene, first.vector, first.contact.tangent)
             found = self._panel(self._leg(travel), state, False, _FIRST, None)
             goes_on = "stick" if self._friction else "slip-off"
-            if found is None or self._margins(found, 1)[goes_on] <= 0:
-                continue
-            if self._friction and np.prod(found.beside(1, found.aside(1))) < 0:
-                continue  # a direction that goes astray from the start
-            return Held(state, np.zeros(3), self._stretch(found))
+            if found is not None and self._margins(found, 1)[goes_on] > 0:
+                return Held(state, np.zeros(3), self._stretch(found))
         return None
 
     def on_from(self, landed: Contact, travel: float) -> Held | None:
