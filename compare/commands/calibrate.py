@@ -24,8 +24,9 @@ def calibrate(
     fit: Annotated[
         str,
         opt.option(
-            "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, "
-            "tip_radius, friction, offset (of foot_x), lag (of the readings behind it).",
+            "What is unknown: flexural_rigidity, length, clamp_stiffness, clamp_angle, "
+            "natural_curvature, tip_radius, friction, offset (of foot_x), lag (of the readings "
+            "behind it).",
             "A,B,...",
         ),
     ] = "flexural_rigidity",
@@ -77,7 +78,7 @@ def calibrate(
         if not found.explains and (why := doubt_of_case(passes[0], known)) is not None:
             terminal.print_line(str(why))
         terminal.keep(folder / "calibration.json", calibration_document(found))
-        text = calibrated_case(*case_tables(case), found, known.beam.base_rigidity)
+        text = calibrated_case(*case_tables(case), found, known.beam)
         terminal.keep(folder / "case.toml", text)
         off, shift = found.found.get("offset"), ""
         if off is not None and not off.lowest <= 0 <= off.highest:

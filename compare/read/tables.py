@@ -39,6 +39,7 @@ PLACES = {
     "flexural_rigidity": ("beam", "flexural_rigidity"),
     "natural_curvature": ("beam", "natural_curvature"),
     "tip_radius": ("beam", "tip_radius"),
+    "length": ("beam", "length"),
     "clamp_stiffness": ("support", "rotational_stiffness"),
     "clamp_angle": ("support", "angle"),
     "friction": ("contact", "friction"),

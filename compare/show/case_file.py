@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from analytic import Calibration
+from analytic import Beam, Calibration
 from analytic.from_clamp.noise import DOUBLE_SIDED_95
 from analytic.problem.quantities import QUANTITIES
 from compare.read.tables import PLACES
@@ -20,13 +20,15 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def calibrated_case(
-    tables: Mapping[str, Any], folder: Path, found: Calibration, before: float
+    tables: Mapping[str, Any], folder: Path, found: Calibration, before: Beam
 ) -> str:
     """The file of a case, from its tables: with the numbers found, and how well they are known.
 
-    `folder` is where the files that it names are, `before` the rigidity at the clamp as it was.
+    `folder` is where the files that it names are, `before` the vibrissa as it was.
     """
     filled: dict[str, Any] = {name: _with_place(table, folder) for name, table in tables.items()}
+    if "length" in found.found:
+        filled["beam"] = _stretched(filled.get("beam", {}), found.case.beam, before)
     for name, one in found.found.items():
         if name not in PLACES:
             continue
@@ -37,7 +39,9 @@ def calibrated_case(
             continue
         unit = QUANTITIES[name].dimension if found.case.beam.si else ""
         if isinstance(changed.get(key), list):  # it varies along the vibrissa
-            changed[key] = [[s, _scaled(x, one.value / before)] for s, x in changed[key]]
+            changed[key] = [
+                [s, _scaled(x, one.value / before.base_rigidity, unit)] for s, x in changed[key]
+            ]
         else:
             changed[key] = _quantity(one.value, unit)
         half = (one.highest - one.lowest) / 2 / DOUBLE_SIDED_95
@@ -71,10 +75,19 @@ def _quantity(value: float, unit: str) -> float | str:
     return f"{value:.9g} {unit}" if unit else float(f"{value:.9g}")
 
 
-def _scaled(rigidity: float | str, factor: float) -> float | str:
-    if isinstance(rigidity, str):
-        return _quantity(in_si(rigidity, "N m^2") * factor, "N m^2")
-    return float(rigidity * factor)
+def _scaled(value: float | str, factor: float, unit: str) -> float | str:
+    return _quantity((in_si(value, unit) if isinstance(value, str) else value) * factor, unit)
+
+
+def _stretched(table: Mapping[str, Any], beam: Beam, before: Beam) -> dict[str, Any]:
+    """What varies along the vibrissa is stretched with it; a radius that was not stated is not."""
+    unit, factor = "m" if beam.si else "", beam.length / before.length
+    varying = {
+        name: [[_scaled(s, factor, unit), x] for s, x in value]
+        for name, value in table.items()
+        if isinstance(value, list)
+    }
+    return {"radius": _quantity(beam.radius, unit), **table, **varying}
 
 
 def _key(name: str) -> str:

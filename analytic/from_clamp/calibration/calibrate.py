@@ -163,10 +163,11 @@ def calibrate(
         The object and all that is known of the vibrissa. What is unknown is first tried as it is
         there. Its stations do not matter.
     unknowns : sequence of str
-        Some of ``flexural_rigidity`` (at the clamp), ``clamp_stiffness``, ``clamp_angle``,
-        ``natural_curvature``, ``tip_radius`` (of a cone whose rigidity follows it), ``friction``,
-        ``offset``, by how much ``foot_x`` is too large, and ``lag``, by how much it is along the
-        motion: how far the foot goes until a reading is there. That takes passes both ways.
+        Some of ``flexural_rigidity`` (at the clamp), ``length``, ``clamp_stiffness``,
+        ``clamp_angle``, ``natural_curvature``, ``tip_radius`` (of a cone whose rigidity follows
+        it), ``friction``, ``offset``, by how much ``foot_x`` is too large, and ``lag``, by how much
+        it is along the motion: how far the foot goes until a reading is there. That takes passes
+        both ways.
     noise : mapping, optional
         Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
         it is what the readings themselves show.

@@ -23,6 +23,7 @@ _AT_THE_END = 1e-6  # from an end of what a number can be
 LAG = "lag"
 OFFSET = "offset"
 LEVER = "lever"
+LENGTH = "length"
 OF_THE_FOOT = (OFFSET, LAG)  # unknowns that are none of the case but of its foot position
 
 
@@ -151,6 +152,7 @@ UNKNOWNS: dict[str, Unknown] = {
         OFFSET, -math.inf, math.inf, (-0.05, 0.05), unit=lambda given: given.beam.length
     ),
     LAG: Unknown(LAG, -_LONGEST_LAG, _LONGEST_LAG, unit=lambda given: given.beam.length),
+    LENGTH: Unknown(LENGTH, 0.5, 2.0, (0.97, 1.03), unit=lambda given: given.beam.length),
 }
 """By name. The rigidity is that at the clamp; what varies along the vibrissa goes along with it.
 
@@ -159,7 +161,7 @@ The clamp is fitted by its compliance, of which a rigid one is an end, ``offset`
 """
 
 LOOK_LIKE_LAG: dict[str, Unknown] = {
-    "length": Unknown("length", 0.5, 2.0, unit=lambda given: given.beam.length),
+    LENGTH: UNKNOWNS[LENGTH],
     LEVER: Unknown(LEVER, -0.5, 0.5, unit=lambda given: given.beam.length),
 }
 """Mistakes that passes both ways past an unknown object may show as a lag."""

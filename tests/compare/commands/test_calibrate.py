@@ -10,6 +10,9 @@ import pytest
 from scipy.signal import lfilter
 
 from analytic import SENSED, Case, Readings, Sweep, calibrate, circle, relative_noise, solve_sweep
+from compare import load_case
+from compare.read.case import case_tables
+from compare.show.case_file import calibrated_case
 from compare.show.fits import calibration_summary
 from tests.analytic.noisy import noisy
 from tests.compare.command import vibrissa
@@ -48,6 +51,24 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     written = json.loads((tmp_path / "found" / "calibration.json").read_text())
     assert written["found"]["clamp_stiffness"]["value"] == pytest.approx(8.0)
     assert written["stations"] > 30
+
+
+def test_what_varies_along_a_vibrissa_is_stretched_with_its_length(tmp_path):
+    """The case that is written is the case found, in any unit, and keeps its radius."""
+    text = (
+        '[beam]\nlength = "5 cm"\n'
+        'flexural_rigidity = [["0 mm", "2 N mm^2"], ["50 mm", "1 N mm^2"]]\n'
+        '[profile]\nkind = "circle"\nradius = "40 mm"\nlowest = ["0 mm", "20 mm"]\n'
+    )
+    (tmp_path / "known.toml").write_text(text)
+    known = load_case(tmp_path / "known.toml").case
+    longer = replace(known, beam=known.beam.scaled(length=1.02), sweep=Sweep(30))
+    found = calibrate(solve_sweep(longer), known, ["length"])
+    written = calibrated_case(*case_tables(tmp_path / "known.toml"), found, known.beam)
+    (tmp_path / "found.toml").write_text(written)
+    beam = load_case(tmp_path / "found.toml").case.beam
+    assert (beam.length, beam.radius) == pytest.approx((0.051, 0.25e-3), rel=1e-8)
+    assert beam.rigidity_at(0.0255) == pytest.approx(1.5e-6, rel=1e-8)
 
 
 STRAIGHT = Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(60))
