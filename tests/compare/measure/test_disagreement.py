@@ -34,7 +34,8 @@ def disagree(snap=NEVER, window=0.05, **errors: np.ndarray) -> dict[str, Disagre
         columns[f"{name}_reference"] = REFERENCE.values(name)[:8]
         error = SCALES[name] * errors.get(name, np.zeros(8))
         columns[f"{name}_candidate"] = columns[f"{name}_reference"] + error
-    return disagreements(REFERENCE, pd.DataFrame(columns), snap, window)
+    table = pd.DataFrame(columns)
+    return disagreements(REFERENCE, table, snap, window, table[:0])
 
 
 @pytest.mark.parametrize("name", CLAMP_READINGS)
