@@ -47,8 +47,8 @@ class Alignment:
     # stations of one phase on both sides, or a jump between them: there is nothing to interpolate);
     # ``outside`` (beyond the reference).
     counts: dict[str, int]
-    # The same rows of the stations where the reference is free and beside them, whatever the
-    # candidate is, and where the candidate alone is, amid the contact of both.
+    # The same rows of the stations where the reference is free, as at those beside them or behind
+    # its last contact, and where the candidate alone is, amid the contact of both.
     idle: pd.DataFrame
 
     def __repr__(self) -> str:
@@ -112,7 +112,8 @@ def align(
     }
     reasons = np.select([*why_not.values()], [*why_not], "compared")
     there, ends = values[:, nearest], np.append(starts, len(x_ref))
-    resting = (state == "free") & _amid(phase == "free")[nearest]
+    behind = nearest > np.flatnonzero(np.isin(phase, ("tip", "tangent"))).max(initial=0)
+    resting = (state == "free") & (_amid(phase == "free")[nearest] | behind)
     resting |= idle & (state != "") & _amid_contact(reference_phase, candidate_phase, nearest)
     resting &= (candidate_phase.phase != "") & ~outside & ~unknown & ~dropped
     between_two = np.flatnonzero(((reasons == "compared") | resting) & ~same)

@@ -295,23 +295,5 @@ def in_one_phase(act: Act) -> Sensor:
     return made
 
 
-def ringing(sweep: Readings, rng: np.random.Generator) -> Readings:
-    """Released, the vibrissa swings, and takes some of the sweep to come to rest."""
-    after = np.arange(len(sweep.table)) - np.flatnonzero(sweep.values("force_y"))[-1]
-    turns = 2 * np.pi * after / rng.uniform(2.2, 5.0)
-    swing = np.where(after > 0, np.exp(-after / rng.uniform(5, 30)) * np.cos(turns), 0.0)
-    size = rng.uniform(0.2, 0.5)
-    return each(lambda values, rng: values + size * largest(values) * swing)(sweep, rng)
-
-
-def last_astray(sweep: Readings, rng: np.random.Generator) -> Readings:
-    """A single force that is wrong: of the last station in contact, or of one past it."""
-    touching = np.flatnonzero(sweep.values("force_y"))
-    at = touching[-1] + (3 if rng.random() < 0.5 else 0)
-    force = sweep.values("force_x").copy()
-    force[at] -= rng.uniform(0.5, 1.0) * largest(force)
-    return columns(sweep, force_x=force)
-
-
 def scaled(by: float) -> Act:
     return lambda values, rng: values * (1 + by)
