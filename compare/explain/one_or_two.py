@@ -75,7 +75,7 @@ def one_or_two(
         wirings.append(about_the_origin(true, foot_x, scale))
     weigh = Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
     tried = _alone(faults, wirings, true, seen, weigh)
-    shapes = _shapes(true, found.reference, physical[1])
+    shapes = _shapes(true, found.reference, physical)
     tried += _in_one_phase(table["phase"].to_numpy()[known], shapes, seen - true, weigh)
     best, rival = best_alone(tried, weigh)
     if best is None or weigh.rest(best) > _LITTLE:
@@ -158,12 +158,12 @@ def _of_all(error: Floats) -> Iterator[Explanation]:
         yield Explanation(text.format(f"{named} of their largest magnitudes"), left, len(sizes))
 
 
-def _shapes(true: Floats, reference: Readings, offset: Cause) -> dict[str, Floats]:
+def _shapes(true: Floats, reference: Readings, physical: list[Cause]) -> dict[str, Floats]:
     """What a model may do wrong at one kind of contact, by its text."""
-    shapes = {
-        "all readings {:+.2%} off": true,
-        f"{reference.running} {{:+.2e}} {reference.running_unit[1]} off": offset.signature,
-    }
+    shapes = {"all readings {:+.2%} off": true}
+    for offset in physical[1:2]:
+        said = f"{reference.running} {{:+.2e}} {reference.running_unit[1]} off"
+        shapes[said] = offset.signature
     for only, name in zip(np.eye(3)[:, :, None], CLAMP_READINGS, strict=True):
         shapes[f"{name} {{:+.2%}} off"] = only * true
         shapes[f"{name} off by {{:+.2e}} of its largest magnitude"] = only + 0 * true

@@ -283,17 +283,3 @@ def standing(sweep: Readings, rng: np.random.Generator) -> Readings:
     holds = (row >= begin) & (row < begin + len(row) // 10)
     which = one if rng.random() < 0.5 else each
     return which(lambda values, rng: np.where(holds, values[begin], values))(sweep, rng)
-
-
-def in_one_phase(act: Act) -> Sensor:
-    """The same in every reading, in contact at the tip alone or short of it alone."""
-
-    def made(sweep: Readings, rng: np.random.Generator) -> Readings:
-        here = sweep.table["phase"].to_numpy() == rng.choice(["tip", "tangent"])
-        return each(lambda values, rng: np.where(here, act(values, rng), values))(sweep, rng)
-
-    return made
-
-
-def scaled(by: float) -> Act:
-    return lambda values, rng: values * (1 + by)

@@ -27,7 +27,6 @@ from tests.fuzz.acts import (
     held,
     held_on,
     humming,
-    in_one_phase,
     jittering,
     largest,
     late,
@@ -40,7 +39,6 @@ from tests.fuzz.acts import (
     repeated,
     rigid_first_half,
     rows,
-    scaled,
     sized,
     softer_and_rubbing,
     spiked,
@@ -193,11 +191,6 @@ MISTAKES: dict[str, Mistake] = {
         "swapped & flexural rigidity",
         beam_off("flexural_rigidity", 0.05, 0.3),
         exchanged("force_x", "force_y"),
-    ),
-    "shifted in one phase": Mistake("readings shifted & alone", sensed=in_one_phase(zero)),
-    "all off in one phase": Mistake(
-        "all readings & alone",
-        sensed=lambda sweep, rng: in_one_phase(scaled(either(rng, 0.05, 0.3)))(sweep, rng),
     ),
     "a coarse model": Mistake(
         None,
