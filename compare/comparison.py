@@ -16,7 +16,7 @@ from compare.align.frames import Frame
 from compare.align.stations import check_same_stations
 from compare.explain.budget import Budget
 from compare.explain.in_space import likely_in_space
-from compare.explain.likely import likely_cause
+from compare.explain.likely import likely_cause, to_find_out
 from compare.judge.allowance import (
     NoiseAllowance,
     SpatialAllowance,
@@ -63,6 +63,12 @@ class Comparison(Judged[Readings], Measurement):
     def likely(self) -> str | None:
         """What the disagreement looks like; None if it agrees, or matches no known cause."""
         return None if self.agrees else likely_cause(self, self.tolerances, self.noise)
+
+    @property
+    def why(self) -> str:
+        """What a disagreement is likely made of, or how to find that out; nothing if it agrees."""
+        said = super().why
+        return said if said or self.agrees else to_find_out(self.reference, self.candidate)
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -47,6 +47,9 @@ class Alignment:
     # stations of one phase on both sides, or a jump between them: there is nothing to interpolate);
     # ``outside`` (beyond the reference).
     counts: dict[str, int]
+    # The same rows of the stations where the reference is free, as at those beside them or behind
+    # its last contact, and where the candidate alone is, amid the contact of both.
+    idle: pd.DataFrame
 
     def __repr__(self) -> str:
         counted = ", ".join(f"{n} {reason}" for reason, n in self.counts.items() if n)
@@ -109,7 +112,11 @@ def align(
     }
     reasons = np.select([*why_not.values()], [*why_not], "compared")
     there, ends = values[:, nearest], np.append(starts, len(x_ref))
-    between_two = np.flatnonzero((reasons == "compared") & ~same)
+    behind = nearest > np.flatnonzero(np.isin(phase, ("tip", "tangent"))).max(initial=0)
+    resting = (state == "free") & (_amid(phase == "free")[nearest] | behind)
+    resting |= idle & (state != "") & _amid_contact(reference_phase, candidate_phase, nearest)
+    resting &= (candidate_phase.phase != "") & ~outside & ~unknown & ~dropped
+    between_two = np.flatnonzero(((reasons == "compared") | resting) & ~same)
     coarse = np.zeros(len(x))
     for group in pd.Series(between_two).groupby(covering[between_two]).indices.values():
         here = between_two[group]
@@ -129,21 +136,23 @@ def align(
     leapt = (reasons == "compared") & same & (off > LARGE) & _leapt(reference, candidate, nearest)
     if leapt.sum() <= 1 + _SELDOM * (reasons == "compared").sum():
         reasons[leapt] = "beside_jump"
-    compared = reasons == "compared"
-    columns = {
-        "station": np.flatnonzero(compared),
-        "at": x[compared],
-        "phase": state[compared],
-        "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
+    every = {
+        "station": np.arange(len(x)),
+        "at": x,
+        "phase": state,
+        "contact_arc_length": length * (1 - reference_phase.shortfall[nearest]),
     }
-    for name, row in zip(CLAMP_READINGS, there, strict=True):
-        columns[f"{name}_reference"] = row[compared]
-        columns[f"{name}_candidate"] = candidate.values(name)[compared]
+    for name, true, seen in zip(CLAMP_READINGS, there, own, strict=True):
+        every |= {f"{name}_reference": true, f"{name}_candidate": seen}
+    table, idle_table = (
+        pd.DataFrame({name: row[here] for name, row in every.items()})
+        for here in (reasons == "compared", resting)
+    )
     counts = {
         reason: int((reasons == reason).sum())
         for reason in ("compared", "beside_jump", "reference_coarse", *why_not)
     }
-    return Alignment(pd.DataFrame(columns), counts)
+    return Alignment(table, counts, idle_table)
 
 
 def check_same_beam(
@@ -207,6 +216,20 @@ def _leapt(reference: Readings, candidate: Readings, nearest: Integers) -> Boole
     apart = np.abs(true - own)
     beside_it = np.maximum(np.append(0.0, apart[:-1]), np.append(apart[1:], 0.0))
     return np.asarray(leapt & (beside_it < _ALIKE))
+
+
+def _amid(those: Booleans) -> Booleans:
+    """Which of those have none but their like beside them."""
+    beside = np.pad(those, 1, constant_values=True)
+    return np.asarray(beside[:-2] & those & beside[2:])
+
+
+def _amid_contact(
+    reference: Classification, candidate: Classification, nearest: Integers
+) -> Booleans:
+    there, own = (np.isin(one.phase, ("tip", "tangent")) for one in (reference, candidate))
+    within = np.maximum.accumulate(own) & np.maximum.accumulate(own[::-1])[::-1]
+    return np.asarray(_amid(there)[nearest] & within)
 
 
 def _covering(x_ref: Floats, starts: Integers, x: Floats) -> Integers:

@@ -4,19 +4,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Readings
 from analytic.from_clamp.noise import largest, reading_noise, scatter
 from analytic.numerics.arrays import Booleans, Floats, Integers
 from compare.explain.causes import slopes
-from compare.explain.one_or_two import CONVINCING, one_or_two
+from compare.explain.one_or_two import one_or_two
+from compare.explain.stations import agree_to, ended, lone, next_to_snap_off, without_contact
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off, rms
 from compare.measure.measurement import Measurement
-from compare.sense.record import direction
 
 _FEWEST = 10  # stations
-_FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _HIDES = 0.1  # of the reference's largest force; noise of one component
 _ALIKE = 2.5  # times the rms of noise in contact is that without; of AR(0.97) in 20 stations, too
 _MOVES = 0.3  # times what it is off in rms, such a reading varies; a zero that is wrong does not
@@ -34,6 +33,23 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     if not one or not other or one.split()[0] == other.split()[0]:
         return cause
     return "; else ".join(filter(None, (f"two objects: {one}, and the candidate's {other}", cause)))
+
+
+def to_find_out(reference: Readings, candidate: Readings) -> str:
+    """What to do next where the readings alone do not show a cause."""
+    rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
+    advice = {
+        "mujoco ": "too few segments and a soft contact err alike: `vibrissa run CASE --budget` "
+        "measures the parts of a MuJoCo model",
+        "model ": "`vibrissa inspect` names the model's faults, --budget measures the parts",
+        "measured": rig,
+        "": "of a simulator, refine one thing at a time (elements, time step, contact, obstacle) "
+        f"and see which makes them agree; of a rig, {rig}",
+    }
+    # There is no budget past several objects.
+    source = "" if "others" in reference.provenance else candidate.source
+    does = next(to for who, to in advice.items() if source.startswith(who))
+    return f"the readings alone do not show why; {does}"
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a reading of 1e150 has a cause, too
@@ -67,15 +83,18 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     error = seen - true
     short = _short(found)
     if len(table) < _FEWEST:
-        short = short if len(table) and _agrees(error, limits, noise) else []
+        short = short if len(table) and agree_to(error, limits, noise) else []
         return "; ".join([*notes, *_doubted(found), *short]) or None
     jumps = np.array([scatter(row) for row in error])
     known = np.array([noise.level[name] for name in CLAMP_READINGS])
     many = found.alignment.counts["untrusted"] > limits.untrusted * len(found.candidate.table)
     doubted = [*_doubted(found)] if many and not notes else []
-    if (notes or doubted or short) and _agrees(error, limits, noise):
+    if (notes or doubted or short) and agree_to(error, limits, noise):
         return "; ".join([*notes, *doubted, *short])
-    cause = _lone(found, error, table["at"].to_numpy(), limits, noise)
+    agree = agree_to(error, limits, noise)
+    cause = lone(found, error, table["at"].to_numpy(), limits, noise)
+    if cause is None and agree:
+        cause = without_contact(found, limits, noise) or next_to_snap_off(found, limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         cause = (
             _unrest(found, error)
@@ -88,8 +107,8 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
             or _remembering(found, error, scale)
         )
     if cause is None or cause.startswith("noise"):
-        ended = _ended(found, limits) if _agrees(error, limits, noise, jumps) else None
-        cause = "; ".join(filter(None, (ended, cause))) or None
+        late = ended(found, limits) if agree_to(error, limits, noise, jumps) else None
+        cause = "; ".join(filter(None, (late, cause))) or None
     if notes and cause is None:
         return "; ".join([*notes, "beside that the readings disagree, and do not show why"])
     return "; beside that ".join(filter(None, (cause, "; ".join(notes)))) or None
@@ -140,59 +159,6 @@ def _short(found: Measurement) -> list[str]:
         f"too short a sweep: it covers {name} = {at.min():.4g} to {at.max():.4g} {unit}, and "
         f"{' and '.join(beyond)} of the reference lie{'s' * (len(beyond) == 1)} beyond"
     ]
-
-
-def _ended(found: Measurement, limits: Tolerances) -> str | None:
-    """That the candidate lets go early, late or not at all, if that is all that is wrong."""
-    ends, (size, unit), name = found.snap_off, found.reference.running_unit, found.reference.running
-    if ends.reference is None or "snap_off" in (*found.beyond(), *found.not_trusted()):
-        return None
-    way, at = direction(found.reference), found.candidate.running_values
-    end = way * np.inf if ends.candidate is None else ends.candidate
-    early = way * (ends.reference - end) / size
-    if abs(early) <= limits.snap_off + ends.uncertainty / size:
-        return None
-    after = (way * at > way * ends.reference) & (way * at < way * end)
-    if (found.judged["candidate"].phase[after] == "free").any():
-        return None
-    due = f"{name} = {ends.reference / size:.4g} {unit}"
-    if ends.candidate is None:
-        return f"the contact does not end: the clamp stays loaded beyond {due}, and agrees before"
-    place = f"{name} = {end / size:.4g} {unit}"
-    when = "early" if early > 0 else "late"
-    return f"the contact ends {when}, at {place} instead of {due}, and agrees up to there"
-
-
-def _lone(
-    found: Measurement, error: Floats, at: Floats, limits: Tolerances, noise: NoiseAllowance
-) -> str | None:
-    """Single stations that are far off, if all others agree or nearly all of it is theirs."""
-    size = np.abs(error).max(axis=0)
-    off = size > _FAR_OFF * np.median(size)
-    neighbours = np.append(off[1:], False) & off
-    if not off.any() or neighbours.any() or off.mean() > _SELDOM:
-        return None
-    agree = _agrees(error[:, ~off], limits, noise)
-    if not agree and np.sum(error[:, ~off] ** 2) > (1 - CONVINCING) * np.sum(error**2):
-        return None
-    worst = int(size.argmax())
-    reading = CLAMP_READINGS[int(np.abs(error[:, worst]).argmax())]
-    unit, name = found.reference.running_unit, found.reference.running
-    return (
-        f"single stations: {off.sum()} of {len(off)} compared {'is' if off.sum() == 1 else 'are'} "
-        f"off by up to {size[worst]:.1e} of the largest {reading} (at {name} = "
-        f"{at[worst] / unit[0]:.4g} {unit[1]}); "
-        + ("all others agree" if agree else "nearly all of the disagreement is theirs")
-    )
-
-
-def _agrees(
-    error: Floats, limits: Tolerances, noise: NoiseAllowance, jumps: Floats | float = 0.0
-) -> bool:
-    """Whether the readings agree at some stations, beside what jumps from one to the next."""
-    stations = error.shape[1]
-    allowed = [noise.rms(limits.of(name, "rms"), name, stations) for name in CLAMP_READINGS]
-    return bool((rms(error) <= np.hypot(allowed, jumps)).all())
 
 
 _ANGULAR = "facets of a coarse mesh, or links too long for the object"

@@ -1,13 +1,13 @@
 """The one mistake or fault that fits a disagreement clearly best, or the two that do together."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
-from analytic import CLAMP_READINGS
-from analytic.numerics.arrays import Floats
+from analytic import CLAMP_READINGS, Readings
+from analytic.numerics.arrays import Floats, Words
 from compare.explain.causes import Cause, physical_faults, sensor_faults
 from compare.explain.fit import Explanation, fitted
 from compare.explain.wiring import Misreading, about_the_origin, misread
@@ -75,6 +75,8 @@ def one_or_two(
         wirings.append(about_the_origin(true, foot_x, scale))
     weigh = Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
     tried = _alone(faults, wirings, true, seen, weigh)
+    shapes = _shapes(true, found.reference, physical)
+    tried += _in_one_phase(table["phase"].to_numpy()[known], shapes, seen - true, weigh)
     best, rival = best_alone(tried, weigh)
     if best is None or weigh.rest(best) > _LITTLE:
         pairs = list(_both(faults, tried[: len(faults)], seen - true, foot_x))
@@ -154,6 +156,46 @@ def _of_all(error: Floats) -> Iterator[Explanation]:
         named = ", ".join(f"{n} {x:+.1e}" for n, x in zip(CLAMP_READINGS, sizes, strict=True))
         left = float(np.sum((error - sizes[:, None] * shape) ** 2))
         yield Explanation(text.format(f"{named} of their largest magnitudes"), left, len(sizes))
+
+
+def _shapes(true: Floats, reference: Readings, physical: list[Cause]) -> dict[str, Floats]:
+    """What a model may do wrong at one kind of contact, by its text."""
+    shapes = {"all readings {:+.2%} off": true}
+    for offset in physical[1:2]:
+        said = f"{reference.running} {{:+.2e}} {reference.running_unit[1]} off"
+        shapes[said] = offset.signature
+    for only, name in zip(np.eye(3)[:, :, None], CLAMP_READINGS, strict=True):
+        shapes[f"{name} {{:+.2%}} off"] = only * true
+        shapes[f"{name} off by {{:+.2e}} of its largest magnitude"] = only + 0 * true
+    return shapes
+
+
+def _in_one_phase(
+    phase: Words, shapes: Mapping[str, Floats], error: Floats, weigh: Weigh
+) -> Iterator[Explanation]:
+    """What is wrong in one phase alone, as no vibrissa, stage or sensor is."""
+    tried, moved = [], []
+    for one, place in {"tip": "at", "tangent": "short of"}.items():
+        here = phase == one
+        if here.all() or not here.any():
+            continue
+        text = f"{{}}, in phase {one} alone: see what the model does in contact {place} the tip"
+        left = float(np.sum(error[:, ~here] ** 2))
+        for said, shape in shapes.items():
+            fit = fitted(error[:, here], shape[:, here])
+            tried.append(Explanation(text.format(said.format(fit.size)), left + fit.left, 2))
+        mean = error[:, here].mean(axis=1, keepdims=True)
+        sizes = ", ".join(f"{n} {x:+.1e}" for n, x in zip(CLAMP_READINGS, mean[:, 0], strict=True))
+        said = text.format(f"readings shifted ({sizes} of their largest magnitudes)")
+        moved.append(Explanation(said, left + float(np.sum((error[:, here] - mean) ** 2)), 3))
+    if not tried:
+        return
+    best, *others = sorted(tried, key=lambda each: each.left)
+    further = min(moved, key=lambda each: each.left)
+    if weigh.beyond(further) * _BETTER < weigh.beyond(best):
+        yield further
+    elif not any(weigh.alike(best, each) for each in others):
+        yield best
 
 
 def _linear(fault: Cause, error: Floats) -> Explanation:

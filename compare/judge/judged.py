@@ -59,8 +59,8 @@ class Judged(SweepPair[Sweep]):
             f"{self.reference.source}; compared at {self.stations} of "
             f"{len(self.candidate.table)} stations"
         )
-        if self.likely is not None:
-            yield f"  likely: {self.likely}"
+        if self.why:
+            yield f"  {self.why}"
         for name, one in self.disagreement.items():
             limit = self.tolerances.of(name, "rms")
             if one.stations:
@@ -105,6 +105,11 @@ class Judged(SweepPair[Sweep]):
     def likely(self) -> str | None:
         """What the disagreement looks like; None if it agrees, or matches no known cause."""
         return None
+
+    @property
+    def why(self) -> str:
+        """What a disagreement is likely made of, if that is known."""
+        return "" if self.likely is None else f"likely: {self.likely}"
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 Sweep = TypeVar("Sweep", Readings, SpatialReadings)
 
+_LAST = 3  # stations of the reference before its snap-off: in the window there is one
+
 
 @dataclass(frozen=True)
 class Peak:
@@ -50,6 +52,10 @@ class Disagreement:
     peaks: dict[str, Peak]  # the largest difference of each phase
     # The largest difference inside the window before the snap-off; NaN if no station is.
     max_before_snap_off: float = np.nan
+    # By how much the reference changes there over the root of a length; NaN if that is not known.
+    fold: float = np.nan
+    # The largest difference where a sweep is free, at rest; None if no station is there.
+    idle: Peak | None = None
 
     @property
     def stations(self) -> int:
@@ -104,19 +110,61 @@ def disagreement(
 
 
 def disagreements(
-    reference: Readings, table: pd.DataFrame, snap: Occurrence, window: float
+    reference: Readings,
+    table: pd.DataFrame,
+    snap: Occurrence,
+    window: float,
+    idle: pd.DataFrame,
 ) -> dict[str, Disagreement]:
-    """How far the clamp readings are apart at the stations that `align` paired."""
+    """How far the clamp readings are apart at the stations that `align` paired.
+
+    `idle` are those without contact, as `at_rest` has them.
+    """
     at = table["at"].to_numpy()
     near = before_snap_off(reference, at, snap, window)
     phase, arc_length = (table[name].to_numpy()[~near] for name in ("phase", "contact_arc_length"))
     found = {}
     for name, scale in scales(reference).items():
-        error = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy() / scale
+        error, free = (
+            (rows[f"{name}_candidate"] - rows[f"{name}_reference"]).to_numpy() / scale
+            for rows in (table, idle)
+        )
         here = disagreement(error[~near], at[~near], phase, scale, arc_length)
         inside = float(np.abs(error[near]).max()) if near.any() else np.nan
-        found[name] = replace(here, max_before_snap_off=inside)
+        peak = None
+        if len(idle):
+            worst = int(np.argmax(np.abs(free)))
+            peak = Peak(float(abs(free[worst])), float(idle["at"][worst]), np.nan)
+        fold = _fold(reference, name, snap) / scale
+        found[name] = replace(here, max_before_snap_off=inside, fold=fold, idle=peak)
     return found
+
+
+def at_rest(candidate: Readings, idle: pd.DataFrame, snap: Occurrence) -> pd.DataFrame:
+    """Idle stations but those between two snap-offs: the event is what is off there.
+
+    None in motion, where a vibrissa bounces, and swings when it is released.
+    """
+    if snap.reference is None:
+        late = np.zeros(len(idle), dtype=bool)
+    else:
+        way = direction(candidate)
+        end = way * np.inf if snap.candidate is None else snap.candidate
+        after = way * idle["at"].to_numpy()
+        late = (after > way * snap.reference) & (after < way * end)
+    return idle[~late & ("motion" not in candidate.provenance)].reset_index(drop=True)
+
+
+def _fold(reference: Readings, name: str, snap: Occurrence) -> float:
+    """What a reading changes by over the root of the way to the snap-off, at the last stations."""
+    if snap.reference is None:
+        return np.nan
+    ahead = direction(reference) * (snap.reference - reference.running_values)
+    last = np.flatnonzero((ahead > 0) & reference.trusted)[-_LAST:]
+    if len(last) < _LAST:
+        return np.nan
+    roots, values = np.sqrt(ahead[last]), reference.values(name)[last]
+    return float(np.ptp(values) / np.ptp(roots))
 
 
 def before_snap_off(reference: Readings, at: Floats, snap: Occurrence, window: float) -> Booleans:

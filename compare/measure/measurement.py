@@ -19,7 +19,7 @@ from compare.align.offset import (
 from compare.align.order import RowOrder, in_order
 from compare.align.stations import Alignment, align, check_same_way
 from compare.align.units import check_unit_of_length, in_units_of
-from compare.measure.disagreement import SweepPair, disagreements
+from compare.measure.disagreement import SweepPair, at_rest, disagreements
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
@@ -211,10 +211,11 @@ def measure(
         events |= {
             name: one for name, one in seconds.items() if not one.reference is one.candidate is None
         }
+    idle = at_rest(candidate, alignment.idle, snap)
     return Measurement(
         reference,
         candidate,
-        disagreements(reference, alignment.table, snap, window),
+        disagreements(reference, alignment.table, snap, window, idle),
         {**events, "snap_off": snap},
         alignment,
         judged,

@@ -54,21 +54,7 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
     if budget is not None:
         doubt = ", but the budget is undecided" if budget.undecided else ""
         return f"by its budget the largest part is {budget.blame}{doubt}"
-    if comparison.likely is not None:
-        return f"likely: {comparison.likely}"
-    unknown = "the readings alone do not show why"
-    rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
-    advice = {
-        "mujoco ": "`vibrissa run CASE --budget` measures the parts of a MuJoCo model",
-        "model ": "`vibrissa inspect` names the model's faults, --budget measures the parts",
-        "measured": rig,
-        "": "of a simulator, refine one thing at a time (elements, time step, contact, obstacle) "
-        f"and see which makes them agree; of a rig, {rig}",
-    }
-    source = comparison.candidate.source
-    if "others" in comparison.reference.provenance:  # no budget past several objects
-        source = ""
-    return f"{unknown}; {next(to for who, to in advice.items() if source.startswith(who))}"
+    return comparison.why
 
 
 def absent_transitions(comparison: Comparison) -> Iterator[str]:

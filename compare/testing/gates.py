@@ -65,7 +65,7 @@ def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = N
     if isinstance(comparison, Comparison):
         causes = [why(comparison, budget)]
     else:
-        causes = [f"likely: {comparison.likely}"] if comparison.likely else []
+        causes = [comparison.why] if comparison.why else []
     lines = [title, *causes, *comparison.failures, *comparison.remarks]
     raise AssertionError("\n  ".join(lines))
 

@@ -29,7 +29,8 @@ from analytic import (
 )
 from compare import compare
 from compare.sense.noise import with_noise
-from tests.fuzz.planted import MISTAKES, Mistake, with_own_error
+from tests.fuzz.acts import with_own_error
+from tests.fuzz.planted import MISTAKES, Mistake
 
 _OWN_ERROR = (3e-4, 1.2e-3)  # of a reading's largest magnitude: a chain of 40 segments and more
 _NOISE = 5e-3

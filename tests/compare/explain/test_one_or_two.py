@@ -29,7 +29,7 @@ def test_two_must_leave_ten_times_less_than_one(monkeypatch, times, said):
     monkeypatch.setattr(module, "misread", lambda *_: [])
     monkeypatch.setattr(module, "_alone", lambda *_: alone)
     monkeypatch.setattr(module, "_both", lambda *_: together)
-    table = pd.DataFrame({"at": np.linspace(1, -1, STATIONS)})
+    table = pd.DataFrame({"at": np.linspace(1, -1, STATIONS), "phase": "tip"})
     beam = SimpleNamespace(length=1.0)
     offset = SimpleNamespace(uncertainty=0.0)
     found = SimpleNamespace(reference=SimpleNamespace(beam=beam, running=""), offset=offset)
