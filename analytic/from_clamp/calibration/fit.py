@@ -61,6 +61,13 @@ class Expected:
             found[:, self.loaded] *= _MIRRORED
         return found
 
+    @property
+    def slope_angles(self) -> Floats:
+        """Of the contour where it is touched [rad]."""
+        case, _ = _to_the_left(self.case, np.empty(0))
+        angles = case.centreline.at(self.places[:, 0]).alpha
+        return -angles if self.case.sweep.direction == "right" else angles
+
     @cached_property
     def _slopes(self) -> Floats:
         case, _ = _to_the_left(self.case, np.empty(0))
@@ -173,6 +180,11 @@ class LeastSquaresFit:
         if found is None:
             return np.full_like(self.measured.readings, np.nan)
         return self._in_passes(numbers, [one.readings for one in found])
+
+    def touched(self, numbers: Floats) -> tuple[float, float]:
+        """The least and the largest slope angle of the contour at the stations [rad]."""
+        angles = np.concatenate([one.slope_angles for one in self._solved(numbers) or ()])
+        return float(angles.min()), float(angles.max())
 
     def misses(self, numbers: Floats) -> Floats:
         """What they differ from the measured ones by, over the noise."""

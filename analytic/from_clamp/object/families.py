@@ -1,15 +1,12 @@
 """Families of contours that an object may be of, by a few dimensionless numbers."""
 
 import math
-from collections.abc import Callable, Sequence
-from functools import partial
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from analytic.from_clamp.calibration.unknowns import Family, Number
-from analytic.numerics.arrays import Floats
+from analytic.numerics.arrays import Complexes, Floats, Integers
 from analytic.problem.contours.families import circle, ellipse
 from analytic.problem.contours.profile import Profile, of_curve
 from analytic.problem.contours.superellipse import Superellipse
@@ -18,7 +15,6 @@ _SMALLEST, _LARGEST = 1e-3, 30.0  # of a size, over L
 _AWAY = 30.0  # of a place, over L
 _ANGULAR, _ROUND = 8.0, 1.2  # of a superellipse's exponent: nearly a rectangle, nearly a rhombus
 _KNOTS = 7  # at which a convex contour has a radius of curvature of its own; two circles need them
-_GRID = 400  # intervals of slope angle, over which a convex contour is summed up
 _UPRIGHT = math.pi / 2
 
 
@@ -43,12 +39,34 @@ def _superellipse(numbers: Floats) -> Superellipse:
     return Superellipse(*numbers.tolist())
 
 
-class _Summed(NamedTuple):
-    """Coordinates summed up from a radius of curvature."""
+class _Bowed:
+    """A contour whose radius of curvature is, in logarithms, piecewise linear: its points, summed.
 
-    xi: Callable[[Floats], Floats]
-    eta: Callable[[Floats], Floats]
-    radius: Callable[[Floats], Floats]
+    Where log r = a + b alpha, the integral of r exp(i alpha) is r exp(i alpha)/(b + i).
+    """
+
+    def __init__(self, knots: Floats, logarithms: Floats, middle: complex) -> None:
+        self._knots, self._logarithms = knots, logarithms
+        self._rates = np.concatenate([[0.0], np.diff(logarithms) / np.diff(knots), [0.0]])
+        before, behind = (self._integral(knots, np.arange(_KNOTS) + i) for i in (0, 1))
+        self._starts = np.concatenate([[0.0], np.cumsum(before - behind)])
+        self._starts += middle - self._place(knots[_KNOTS // 2])
+
+    def radius(self, alpha: Floats) -> Floats:
+        return np.exp(np.interp(alpha, self._knots, self._logarithms))
+
+    def xi(self, alpha: Floats) -> Floats:
+        return self._place(alpha).real
+
+    def eta(self, alpha: Floats) -> Floats:
+        return self._place(alpha).imag
+
+    def _place(self, alpha: Floats) -> Complexes:
+        between = np.searchsorted(self._knots, alpha)
+        return np.asarray(self._integral(alpha, between) + self._starts[between])
+
+    def _integral(self, alpha: Floats, between: Integers) -> Complexes:
+        return np.asarray(self.radius(alpha) * np.exp(1j * alpha) / (self._rates[between] + 1j))
 
 
 def convex_between(lowest: float, highest: float) -> Family:
@@ -58,24 +76,11 @@ def convex_between(lowest: float, highest: float) -> Family:
     """
     knots = np.linspace(lowest, highest, _KNOTS)
     middle = float(knots[_KNOTS // 2])
-    grid = np.linspace(-math.pi / 2, math.pi / 2, _GRID + 1)
-
-    def radius(logarithms: Floats, alpha: Floats) -> Floats:
-        return np.exp(np.interp(alpha, knots, logarithms))
 
     def profile(numbers: Floats) -> Profile:
-        logarithms = numbers[2:]
-        curve = partial(radius, logarithms)
-
-        def summed(at: float, slope: Callable[[Floats], Floats]) -> CubicHermiteSpline:
-            ends, halfway = (curve(x) * slope(x) for x in (grid, grid[:-1] + np.diff(grid) / 2))
-            simpson = (ends[:-1] + 4 * halfway + ends[1:]) * np.diff(grid) / 6
-            along = np.concatenate([[0.0], np.cumsum(simpson)])
-            begin = float(CubicHermiteSpline(grid, along, ends)(middle))
-            return CubicHermiteSpline(grid, along + at - begin, ends)
-
-        x, y = summed(float(numbers[0]), np.cos), summed(float(numbers[1]), np.sin)
-        return of_curve(_Summed(x, y, curve), _UPRIGHT, "convex contour")
+        return of_curve(
+            _Bowed(knots, numbers[2:], complex(*numbers[:2])), _UPRIGHT, "convex contour"
+        )
 
     def start(simpler: Floats) -> Floats:
         known = _ellipse(simpler) if len(simpler) > 3 else _circle(simpler)

@@ -153,7 +153,7 @@ def families_fitted(
         given = _measured(passes, noise, 0)[0].spread
         if given[0] < fit.measured.spread[0]:  # a foot that jitters would excuse a wrong object
             seen = replace(seen, by_noise=as_likely_by(given, fit, numbers))
-        return _object(known[name], fit, numbers, misfit, seen, angles)
+        return _object(known[name], fit, numbers, misfit, seen)
 
     return found
 
@@ -227,7 +227,6 @@ def _object(
     numbers: Floats,
     misfit: float,
     known: Estimated,
-    angles: Floats,
 ) -> FittedObject:
     long, kinds, size = fit.given.beam.length, fit.kinds, len(family.kinds)
     deviations = np.sqrt(np.diag(known.covariance))
@@ -251,7 +250,7 @@ def _object(
         family=family.name,
         found=found,
         case=fit.sought(numbers).case,
-        band=_band(family, fit.of_object(numbers), known.covariance[:size, :size], angles, long),
+        band=_band(family, fit, numbers, known.covariance[:size, :size]),
         misfit=misfit,
         explains=explained_by_noise(misfit, fit.freedom, fit.measured.vague)
         and left_by_noise(known.noise, alike, misfit),
@@ -265,11 +264,14 @@ def _object(
 
 
 def _band(
-    family: Family, numbers: Floats, covariance: Floats, angles: Floats, length: float
+    family: Family, fit: LeastSquaresFit, numbers: Floats, covariance: Floats
 ) -> dict[str, Floats]:
-    """The contour over the angles that are touched, and how well it is known along its normal."""
-    low, high = np.quantile(angles, [0.01, 0.99]).tolist()
-    angle = np.linspace(low, high, _BAND)
+    """The contour over the angles that are touched, and how well it is known along its normal.
+
+    Those of the fit: noise of single contacts would reach beyond them, along a flat side far.
+    """
+    length, angle = fit.given.beam.length, np.linspace(*fit.touched(numbers), _BAND)
+    numbers = fit.of_object(numbers)
 
     def places(at: Floats) -> Floats:
         contour = family.profile(at)

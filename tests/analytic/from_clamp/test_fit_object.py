@@ -167,6 +167,22 @@ def test_what_is_best_at_an_end_of_a_family_is_none_of_it():
 
 
 @pytest.mark.slow
+def test_the_band_ends_where_the_contact_does():
+    """Along a flat side noise of single contacts made it go on for 2.5 L, 1e-2 L wide."""
+    corners = np.array([(0.088, 1.131), (-0.094, 0.872), (0.037, 0.78), (0.22, 1.038)])
+    exact = solve_sweep(Case(Beam(), polygon(corners).offset(0.047), Sweep(150)))
+    found = fit_object(noisy(exact, relative_noise(exact, 0.01), 0), "convex")
+    assert found.explains
+    x, y, half = (found.band[name] for name in ("x", "y", "half_width"))
+    touched = exact.table.query("phase != 'free'")
+    assert y.max() < touched["contact_y"].max() + 0.02
+    away, along = np.stack([x, y], axis=1)[:, None] - corners, np.roll(corners, -1, 0) - corners
+    share = np.clip(np.sum(away * along, axis=2) / np.sum(along**2, axis=1), 0, 1)
+    apart = np.linalg.norm(away - share[..., None] * along, axis=2).min(axis=1) - 0.047
+    assert np.mean(np.abs(apart) < half) > 0.9
+
+
+@pytest.mark.slow
 def test_a_wrong_object_is_not_excused_by_a_foot_that_jitters():
     """Two circles of 0.5 and 0.2 L: with a jitter of its own a single one explained them."""
     exact = solve_sweep(Case(Beam(), two_circles(0.5, 0.2, (0.0, 0.7)), Sweep(80)))
