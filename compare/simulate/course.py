@@ -19,6 +19,7 @@ _ACROSS = 0.05  # L; of the plane: what is so far off it is 0.2 per cent shorter
 _TORSION = 0.2
 LEANS = 0.2
 """rad, of hinges; of 0.1 readings are 0.3 per cent worse, of 0.35 two."""
+_UNIT = 0.1  # relative; in what is as many times too little as a radian has degrees
 _MANY = 6  # joints; more than that say how the curvature changes
 
 
@@ -31,6 +32,32 @@ def curvature(found: MeasuredBeam, stations: int) -> float | list[tuple[float, f
     if np.abs(off).max() < _BESIDE * found.length:
         return arc
     return list(zip(s.tolist(), np.polyval(np.polyder(terms), s).tolist(), strict=True))
+
+
+def coiled(found: MeasuredBeam) -> Iterator[Remark]:
+    """Springs that turn it back to its foot: of such a coil nothing else is worth saying."""
+    turns = np.array([joint.springref for joint in found.joints])
+    most, whole = float(turns[np.argmax(np.abs(turns))]), float(np.abs(np.cumsum(turns)).max())
+    if whole > np.pi:
+        yield Remark("fault", "springref", f"up to {most:.4g} rad at a joint, {whole:.3g} rad from "
+                     "clamp to tip, turns the vibrissa back to its foot", "if it is in degrees, "
+                     f'write springref="{np.deg2rad(most):.4g}", or <compiler angle="degree"/>'
+                     )  # fmt: skip
+
+
+def _as_degrees(found: MeasuredBeam, wanted: float | None = None) -> str:
+    """What to do if springs turn it by so little that radians were perhaps taken for degrees."""
+    most = max((joint.springref for joint in found.joints), key=abs)
+    turned = np.rad2deg(found.natural_curvature)
+    meant = abs(turned * found.length) < np.pi
+    if wanted is not None:
+        meant = abs(turned - wanted) < _UNIT * abs(wanted)
+    if not (most and meant):
+        return ""
+    return (
+        f"if its springref of {np.rad2deg(most):.4g} degrees at a joint is in radians, write "
+        f'springref="{np.rad2deg(np.rad2deg(most)):.4g}", or <compiler angle="radian"/>'
+    )
 
 
 def on_course(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
@@ -49,7 +76,8 @@ def on_course(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     if stated is None:
         if is_curved(found) and off <= _ASIDE:
             yield Remark("note", "natural curvature", f"the tip is turned by {own * length:.3g} "
-                         "rad at rest, as a curved vibrissa's is")  # fmt: skip
+                         "rad at rest, as a curved vibrissa's is",
+                         _as_degrees(found))  # fmt: skip
         return
     s = np.linspace(0, stated.length, _POINTS)
     curved = stated.curvature_at(s)
@@ -61,8 +89,8 @@ def on_course(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     beside = _off(found, beside - np.clip(np.median(beside), -turned, turned))
     if is_curved(found, wanted):
         yield Remark("fault", "natural curvature", f"{own * length:.3g}/L instead of "
-                     f"{wanted * length:.3g}/L: at rest the tip is turned by so much"
-                     )  # fmt: skip
+                     f"{wanted * length:.3g}/L: at rest the tip is turned by so much",
+                     _as_degrees(found, wanted))  # fmt: skip
     elif (far := float(np.abs(beside).max()) / length) > _BESIDE and off <= _ASIDE:
         yield Remark("fault", "natural curvature", f"as large as stated in the mean, but up to "
                      f"{far:.1e} L beside that course")  # fmt: skip

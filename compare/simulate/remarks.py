@@ -8,7 +8,7 @@ import numpy as np
 from analytic import Beam
 from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
-from compare.simulate.course import LEANS, on_course, on_plane
+from compare.simulate.course import LEANS, coiled, on_course, on_plane
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import EXPLICIT, FORCE, RADIUS, RIGIDITY, Remark
 from compare.simulate.rigidity import (
@@ -55,7 +55,7 @@ _UNDAMPED = 1e-6  # ratio; a joint of that rings for a hundred thousand periods
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
-    said = [
+    said = [*coiled(found)] or [
         *_stiffness(found),
         *_stated(found, stated),
         *(_surface(found) if stated is None else ()),

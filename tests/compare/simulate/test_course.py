@@ -124,3 +124,24 @@ def test_an_arc_whose_foot_goes_on_as_its_first_link_is_sound(tmp_path, turned, 
 
 def test_an_arc_is_one_number(tmp_path):
     assert curvature(inspect_model(OnRail(curvature=0.5).write(tmp_path)), 21) == pytest.approx(0.5)
+
+
+DEGREE = np.pi / 180
+
+
+@pytest.mark.parametrize(
+    ("curvature", "stated", "faults", "said"),
+    [
+        (1 / DEGREE, None, {"springref"}, ("2.865 rad at a joint", 'springref="0.05"')),
+        (DEGREE, Beam(natural_curvature=1.0), {"natural curvature"}, ('springref="2.865"',)),
+        (DEGREE, None, set(), ('springref="2.865"',)),
+        (0.3, Beam(natural_curvature=1.0), {"natural curvature"}, ()),
+        (3.0, None, set(), ()),
+    ],
+)
+def test_degrees_for_radians_in_springref_are_one_line(tmp_path, curvature, stated, faults, said):
+    found = Inspection(inspect_model(OnRail(curvature=curvature).write(tmp_path)), stated)
+    assert faults_in(found) == faults
+    (line,) = map(str, found.remarks)
+    assert all(words in line for words in said)
+    assert bool(said) == ("springref" in line)
