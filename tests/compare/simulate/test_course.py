@@ -145,3 +145,20 @@ def test_degrees_for_radians_in_springref_are_one_line(tmp_path, curvature, stat
     (line,) = map(str, found.remarks)
     assert all(words in line for words in said)
     assert bool(said) == ("springref" in line)
+
+
+@pytest.mark.parametrize("links", [12, 40])
+@pytest.mark.parametrize(
+    ("turns", "kinked"),
+    [({0.5: 0.05}, True), ({0.8: 0.05}, True), ({0.5: 0.015}, False),
+     ({0.3: 0.016, 0.6: -0.016, 0.8: 0.016}, True)],
+)  # fmt: skip
+def test_a_kink_by_which_readings_are_off_is_named(tmp_path, links, turns, kinked):
+    """By 0.05 rad in the middle of twenty links they were 0.8 per cent off, and it was sound."""
+    path = OnRail(links=links).write(tmp_path)
+    text = path.read_text()
+    for share, turn in turns.items():
+        start = f'<body name="whisker{round(share * links)}" '
+        text = text.replace(start, f'{start}euler="0 0 {turn}" ')
+    path.write_text(text)
+    assert faults_in(Inspection(inspect_model(path))) == ({"centreline"} if kinked else set())
