@@ -13,9 +13,9 @@ from mujoco_models.inspect.measured import MeasuredBeam
 _POINTS = 1001  # of a course
 # L; one body of twenty that is so far aside makes readings 0.6 per cent worse, 3e-3 0.9, 0.01 3.
 _ASIDE = 2e-3
-# rad, of all joints together, as the root of the sum of squares. At one of 12 to 40 joints 0.02 makes
-# readings 0.1 to 0.9 per cent worse, 0.03 0.3 to 1.3, 0.05 0.4 to 2.3, the most at 0.3 L; of places
-# that are read off with an error of 2e-4 L, 0.05 makes 1.2.
+# rad, of all joints, as the root of the sum of squares. At one of 12 to 40 joints 0.02 makes
+# readings 0.1 to 0.9 per cent worse, 0.03 0.3 to 1.3, 0.05 0.4 to 2.3, the most at 0.3 L; at all
+# of them, as of places read off with an error of 2e-4 L, 0.05 makes 1.2.
 _KINK = 0.02
 _BESIDE = 5e-3  # L; of the course that is stated, as `is_curved` allows
 _ACROSS = 0.05  # L; of the plane: what is so far off it is 0.2 per cent shorter in it
@@ -167,7 +167,7 @@ def _off(found: MeasuredBeam, slopes: Floats) -> Floats:
 
 
 def _kinks(found: MeasuredBeam) -> Floats:
-    """How much more each joint turns at rest than those around it [rad]; a course bends smoothly."""
+    """How much more each joint turns at rest than those around it [rad]."""
     turns, cells = np.array([(joint.angle, joint.cell) for joint in found.joints]).T
     rates, kinks = turns / cells, np.zeros(len(turns))
     for i in range(1, len(turns) - 1):
