@@ -170,7 +170,7 @@ def _kinks(found: MeasuredBeam) -> Floats:
     """How much more each joint turns at rest than those around it [rad]."""
     turns, cells = np.array([(joint.angle, joint.cell) for joint in found.joints]).T
     rates, kinks = turns / cells, np.zeros(len(turns))
-    for i in range(1, len(turns) - 1):
-        beside = min(2, i, len(turns) - 1 - i)
+    for i in range(2, len(turns) - 2):  # the first and the last have chords of an arc beside them
+        beside = min(2, i - 1, len(turns) - 2 - i)
         kinks[i] = turns[i] - cells[i] * np.median(rates[i - beside : i + beside + 1])
     return kinks
