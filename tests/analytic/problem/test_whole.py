@@ -6,7 +6,7 @@ import pytest
 from analytic import InputError, Sweep
 from mujoco_models import Settings
 
-COUNTS = lambda x: Sweep(stations=x).stations, lambda x: Settings(segments=x).segments  # noqa: E731
+COUNTS = lambda x: Sweep(stations=x).stations, lambda x: Settings(segments=x).segments
 
 
 @pytest.mark.parametrize("count", COUNTS)
@@ -19,8 +19,9 @@ def test_a_whole_number_of_any_type_is_an_integer(count, given):
 
 @pytest.mark.parametrize("count", COUNTS)
 @pytest.mark.parametrize(
-    "given", [30.5, True, np.array(True), np.nan, np.inf, -np.inf, 1e300, "30", np.array([30]), 30j, None]
-)  # fmt: skip
+    "given",
+    [30.5, True, np.array(True), np.nan, np.inf, -np.inf, 1e300, "30", np.array([30]), 30j, None],
+)
 def test_what_is_not_whole_is_refused(count, given):
     with pytest.raises(InputError, match="a whole number"):
         count(given)
