@@ -3,10 +3,11 @@
 The command line needs no more of the settings before it knows what to do.
 """
 
-from numbers import Integral, Real
+from numbers import Real
 from typing import Literal, TypeAlias, get_args
 
 from analytic.problem.errors import InputError, unknown
+from analytic.problem.whole import as_whole
 
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
@@ -25,19 +26,25 @@ def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
         raise unknown(name, value, allowed)
 
 
-def check_number(
-    name: str, value: object, low: float, high: float, remedy: str, whole: bool = False
-) -> None:
+def check_number(name: str, value: object, low: float, high: float, remedy: str) -> None:
     """Refuse what is no number, or out of its range."""
-    is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
     if not (is_number and low <= value <= high):  # type: ignore[operator]
-        number = "a whole number" if whole else "a number"
-        raise InputError(name, value, f"{number} between {low:g} and {high:g}", remedy)
+        raise InputError(name, value, f"a number between {low:g} and {high:g}", remedy)
 
 
 def check_numbers(kind: str, values: object, limits: Limits) -> None:
-    """Refuse an object of which a field is out of its range; one that may be left out, if given."""
+    """Refuse an object of which a field is out of its range; one that may be left out, if given.
+
+    What is to be whole becomes an integer, as ``40.0`` does.
+    """
     for name, (low, high, remedy) in limits.items():
-        value = getattr(values, name)
-        if value is not None or getattr(type(values), name) is not None:
-            check_number(f"{kind}.{name}", value, low, high, remedy, isinstance(low, int))
+        value, called = getattr(values, name), f"{kind}.{name}"
+        if isinstance(low, int):
+            number = as_whole(value)
+            if number is None or not low <= number <= high:
+                allowed = f"a whole number between {low:g} and {high:g}"
+                raise InputError(called, value, allowed, remedy)
+            object.__setattr__(values, name, number)
+        elif value is not None or getattr(type(values), name) is not None:
+            check_number(called, value, low, high, remedy)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from numbers import Integral, Real
+from numbers import Real
 from typing import TypeAlias, TypeGuard
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError, kind_of
+from analytic.problem.whole import as_whole
 
 LARGEST = 1e150  # its square is a number still, and so is its inverse
 
@@ -39,8 +40,8 @@ def within(
 
 
 def whole(name: str, value: object, low: int, high: int) -> int:
-    number = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else low - 1
-    if not low <= number <= high:
+    number = as_whole(value)
+    if number is None or not low <= number <= high:
         raise InputError(name, value, f"a whole number, {low} to {high:,}", "200 is usual")
     return number
 

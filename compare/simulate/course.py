@@ -13,12 +13,17 @@ from mujoco_models.inspect.measured import MeasuredBeam
 _POINTS = 1001  # of a course
 # L; one body of twenty that is so far aside makes readings 0.6 per cent worse, 3e-3 0.9, 0.01 3.
 _ASIDE = 2e-3
+# rad, of all joints, as the root of the sum of squares. At one of 12 to 40 joints 0.02 makes
+# readings 0.1 to 0.9 per cent worse, 0.03 0.3 to 1.3, 0.05 0.4 to 2.3, the most at 0.3 L; at all
+# of them, as of places read off with an error of 2e-4 L, 0.05 makes 1.2.
+_KINK = 0.02
 _BESIDE = 5e-3  # L; of the course that is stated, as `is_curved` allows
 _ACROSS = 0.05  # L; of the plane: what is so far off it is 0.2 per cent shorter in it
 # GJ/EI; a cable of ten links is 0.6 per cent off at 2, 0.9 at 0.3, 2.6 at 0.1 and 48 at 0.012.
 _TORSION = 0.2
 LEANS = 0.2
 """rad, of hinges; of 0.1 readings are 0.3 per cent worse, of 0.35 two."""
+_UNIT = 0.1  # relative; in what is as many times too little as a radian has degrees
 _MANY = 6  # joints; more than that say how the curvature changes
 
 
@@ -33,23 +38,58 @@ def curvature(found: MeasuredBeam, stations: int) -> float | list[tuple[float, f
     return list(zip(s.tolist(), np.polyval(np.polyder(terms), s).tolist(), strict=True))
 
 
+def coiled(found: MeasuredBeam) -> Iterator[Remark]:
+    """Springs that turn it back to its foot: of such a coil nothing else is worth saying."""
+    turns = np.array([joint.springref for joint in found.joints])
+    most, whole = float(turns[np.argmax(np.abs(turns))]), float(np.abs(np.cumsum(turns)).max())
+    if whole > np.pi:
+        yield Remark("fault", "springref", f"up to {most:.4g} rad at a joint, {whole:.3g} rad from "
+                     "clamp to tip, turns the vibrissa back to its foot", "if it is in degrees, "
+                     f'write springref="{np.deg2rad(most):.4g}", or <compiler angle="degree"/>'
+                     )  # fmt: skip
+
+
+def _as_degrees(found: MeasuredBeam, wanted: float | None = None) -> str:
+    """What to do if springs turn it by so little that radians were perhaps taken for degrees."""
+    most = max((joint.springref for joint in found.joints), key=abs)
+    turned = np.rad2deg(found.natural_curvature)
+    meant = abs(turned * found.length) < np.pi
+    if wanted is not None:
+        meant = abs(turned - wanted) < _UNIT * abs(wanted)
+    if not (most and meant):
+        return ""
+    return (
+        f"if its springref of {np.rad2deg(most):.4g} degrees at a joint is in radians, write "
+        f'springref="{np.rad2deg(np.rad2deg(most)):.4g}", or <compiler angle="radian"/>'
+    )
+
+
 def on_course(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     """Whether it rests as it should, or on a smooth course."""
     length, own = found.length, found.natural_curvature
     _, middles, slopes = _links(found)
     aside = _off(found, slopes - np.polyval(_slope_terms(found), middles))
     worst = int(np.argmax(np.abs(np.diff(aside, prepend=0.0))))
-    off = float(np.abs(aside).max()) / length
+    off, kinks = float(np.abs(aside).max()) / length, _kinks(found)
     if off > _ASIDE:
         joint = found.joints[min(worst, len(found.joints) - 1)]
         yield Remark("fault", "centreline", f"at rest it leaves a smooth course by {off:.1e} L, "
                      f"most at {joint.name!r}, s = {joint.s / length:.2f} L",
                      "let each body begin where the one before ends, and point where that does"
                      )  # fmt: skip
+    elif np.linalg.norm(kinks) > _KINK:
+        worst = int(np.argmax(np.abs(kinks)))
+        joint = found.joints[worst]
+        yield Remark("fault", "centreline", "at rest it is kinked: by "
+                     f"{abs(kinks[worst]):.2g} rad at {joint.name!r}, s = {joint.s / length:.2f} L,"
+                     " beside its neighbours", "let each body point where the one before does, or "
+                     "spread the turn over all joints")  # fmt: skip
+        return
     if stated is None:
         if is_curved(found) and off <= _ASIDE:
             yield Remark("note", "natural curvature", f"the tip is turned by {own * length:.3g} "
-                         "rad at rest, as a curved vibrissa's is")  # fmt: skip
+                         "rad at rest, as a curved vibrissa's is",
+                         _as_degrees(found))  # fmt: skip
         return
     s = np.linspace(0, stated.length, _POINTS)
     curved = stated.curvature_at(s)
@@ -61,8 +101,8 @@ def on_course(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     beside = _off(found, beside - np.clip(np.median(beside), -turned, turned))
     if is_curved(found, wanted):
         yield Remark("fault", "natural curvature", f"{own * length:.3g}/L instead of "
-                     f"{wanted * length:.3g}/L: at rest the tip is turned by so much"
-                     )  # fmt: skip
+                     f"{wanted * length:.3g}/L: at rest the tip is turned by so much",
+                     _as_degrees(found, wanted))  # fmt: skip
     elif (far := float(np.abs(beside).max()) / length) > _BESIDE and off <= _ASIDE:
         yield Remark("fault", "natural curvature", f"as large as stated in the mean, but up to "
                      f"{far:.1e} L beside that course")  # fmt: skip
@@ -124,3 +164,13 @@ def _off(found: MeasuredBeam, slopes: Floats) -> Floats:
         allowed = bends[end] * lengths[end] / 2
         slopes[end] = np.sign(slopes[end]) * max(abs(slopes[end]) - allowed, 0.0)
     return np.asarray(np.cumsum(slopes * lengths))
+
+
+def _kinks(found: MeasuredBeam) -> Floats:
+    """How much more each joint turns at rest than those around it [rad]."""
+    turns, cells = np.array([(joint.angle, joint.cell) for joint in found.joints]).T
+    rates, kinks = turns / cells, np.zeros(len(turns))
+    for i in range(2, len(turns) - 2):  # the first and the last have chords of an arc beside them
+        beside = min(2, i - 1, len(turns) - 2 - i)
+        kinks[i] = turns[i] - cells[i] * np.median(rates[i - beside : i + beside + 1])
+    return kinks

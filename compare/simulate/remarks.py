@@ -8,7 +8,7 @@ import numpy as np
 from analytic import Beam
 from analytic.numerics.arrays import Floats
 from compare.simulate import treatment
-from compare.simulate.course import LEANS, on_course, on_plane
+from compare.simulate.course import LEANS, coiled, on_course, on_plane
 from compare.simulate.foot import on_foot
 from compare.simulate.remark import EXPLICIT, FORCE, RADIUS, RIGIDITY, Remark
 from compare.simulate.rigidity import (
@@ -55,8 +55,9 @@ _UNDAMPED = 1e-6  # ratio; a joint of that rings for a hundred thousand periods
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
-    said = [
+    said = [*coiled(found)] or [
         *_stiffness(found),
+        *_taper(found, stated),
         *_stated(found, stated),
         *(_surface(found) if stated is None else ()),
         *_units(found, stated),
@@ -89,12 +90,6 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
                      f"tip gives way like one of EI {abs(coarse):.1%} "
                      f"{'lower' if coarse < 0 else 'higher'}", "take more")  # fmt: skip
     yield from _single_joints(found, own / rigidity - 1)
-    if tapers(found) or not is_cone(found):
-        (start, end), ends = radii(found), smooth_rigidity(found, np.array([0.0, found.length]))
-        solid = (f"; with radii from {start:.4g} to {end:.4g} one that is solid would have "
-                 f"{ends[0] * (end / start) ** 4:.4g} there, by r^4")  # fmt: skip
-        yield Remark("note", "uniformity", f"EI goes from {ends[0]:.4g} at the clamp to "
-                     f"{ends[1]:.4g} at the tip{'' if is_cone(found) else solid}")  # fmt: skip
     error = elastica_error(found)
     if abs(off) <= RIGIDITY and error > _ELASTICA and found.lean <= LEANS:
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
@@ -112,6 +107,23 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "friction in joints", f"frictionloss holds {found.friction_loss:.3g} "
                      "in each: the vibrissa stays bent",
                      edits=(*treatment.joints(found, frictionloss="0"),))  # fmt: skip
+
+
+def _taper(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
+    """How EI goes along it, and whether that is how its radius does."""
+    if is_cone(found) and not tapers(found):
+        return
+    (start, end), ends = radii(found), smooth_rigidity(found, np.array([0.0, found.length]))
+    said = f"EI goes from {ends[0]:.4g} at the clamp to {ends[1]:.4g} at the tip"
+    thinner = f"with radii from {start:.4g} to {end:.4g}"
+    meant = stated is not None and np.diff(stated.rigidity_at([0.0, stated.length])) > 0
+    if ends[1] > (1 + _JOINT) * ends[0] and end < (1 - _JOINT) * start and not meant:
+        yield Remark("fault", "uniformity", f"{said}, {thinner}: it stiffens as it gets thinner",
+                     "clamp and tip are changed over in its springs, or in its geoms: turn one "
+                     "of them round")  # fmt: skip
+        return
+    solid = f"; {thinner} one that is solid would have {ends[0] * (end / start) ** 4:.4g} there"
+    yield Remark("note", "uniformity", said + ("" if is_cone(found) else f"{solid}, by r^4"))
 
 
 def _single_joints(found: MeasuredBeam, off: Floats) -> Iterator[Remark]:

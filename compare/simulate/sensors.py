@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from compare.simulate import treatment
 from compare.simulate.expected import SPEED
@@ -14,6 +15,9 @@ from mujoco_models.inspect.measured import MeasuredBeam, Sensed, nearest_axes
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
+# Of a curved one's turn at its first joint: between the clamp's tangent and the chord before that
+# joint, of half a cell, is a quarter of it.
+_CHORD = 0.3
 _LEVER = 5e-3  # L; of the force's moment
 _LATE = 5e-3  # L; of the foot, as 0.1 T1 at 0.05 L/T1
 _READS = 0.01  # of a load, by the sensor that should read all of it
@@ -29,6 +33,13 @@ def on_sensors(found: MeasuredBeam) -> Iterator[Remark]:
         edits = treatment.with_sensors(found, *missing) if word == missing[0] else ()
         yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa",
                      f"add a site at the clamp and <{word} site=.../>", edits)  # fmt: skip
+    with_foot = {one: _hinges_turned(found, one) for one in sensors.values() if one is not None}
+    turned = max(with_foot.values(), default=0.0)
+    if turned and found.rail is None:
+        both = (edit for one in with_foot for edit in treatment.straightened(one))
+        yield Remark("fault", "plane", f"its hinges are turned by {np.rad2deg(turned):.2g} degrees "
+                     "about it, against foot and sensors", "turn the axes of its joints, or, if "
+                     "they are meant so, the sensors", tuple(both))  # fmt: skip
 
 
 def is_silent(sensor: Sensed) -> bool:
@@ -88,16 +99,11 @@ def _axes(word: str, sensor: Sensed, found: MeasuredBeam) -> Iterator[Remark]:
                     "between foot and vibrissa")  # fmt: skip
         return
     nearest = nearest_axes(axes)
-    rotation = axes.T @ nearest
-    angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
-    with_rail = (
-        found.rail is not None
-        and abs(found.rail.way[2]) > np.sin(_ROTATED)
-        and all(
-            np.abs(axes @ way).max() > np.cos(_ROTATED) for way in (found.rail.way, (0.0, 1.0, 0.0))
-        )
-    )  # it is the hinges that are turned
-    if angle > _ROTATED and not with_rail:
+    turn = Rotation.from_matrix(nearest.T @ axes).as_rotvec()
+    least, most = sorted((0.0, _CHORD * found.joints[0].angle))
+    turn[2] -= np.clip(turn[2], least, most)
+    angle = float(np.linalg.norm(turn))
+    if angle > _ROTATED and not _hinges_turned(found, sensor):
         yield fault(f"{sensor.name!r} is turned by {np.rad2deg(angle):.2g} degrees against "
                     "vibrissa and sweep", edits=treatment.straightened(sensor))  # fmt: skip
     if not np.array_equal(nearest, np.eye(3)):
@@ -107,3 +113,12 @@ def _axes(word: str, sensor: Sensed, found: MeasuredBeam) -> Iterator[Remark]:
         )
         yield Remark("note", f"{word} sensor", f"its axes x, y, z are {words} of the sweep (y "
                      "along the vibrissa, z along its hinges)")  # fmt: skip
+
+
+def _hinges_turned(found: MeasuredBeam, sensor: Sensed) -> float:
+    """By how much they are about the vibrissa, against a sensor that is as rail or foot [rad]."""
+    ways = found.frame[1:].T if found.rail is None else found.rail.way[None]
+    way = ways[np.argmax(np.abs(ways[:, 0]))]
+    off = float(np.arctan2(abs(way[2]), abs(way[0])))
+    as_it = (np.abs(sensor.axes @ one).max() > np.cos(_ROTATED) for one in (way, (0.0, 1.0, 0.0)))
+    return off if off > _ROTATED and all(as_it) else 0.0

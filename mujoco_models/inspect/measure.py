@@ -194,6 +194,7 @@ def _joints(
     bodies = held.parts.chain
     names = [name_of(held.model.body(body), "body") for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
+    refs = [max(_springrefs(held.model, body), key=abs, default=0.0) for body in bodies]
     masses = masses_of(held.model, bodies)
     cells = np.diff(bounds)
     for name, cell, bends in zip(names, cells, compliance, strict=True):
@@ -203,11 +204,18 @@ def _joints(
                 "hinged across the same plane as they, at a place of its own",
                 "turn its hinge or add one, or say which is the vibrissa with --foot",
             )  # fmt: skip
-    figures = np.stack([s, cells, compliance, angles, damping, masses], axis=1).tolist()
+    figures = np.stack([s, cells, compliance, angles, refs, damping, masses], axis=1).tolist()
     return tuple(
         Joint(name, (*joints_of(held.model, body),), _rigid(held.model, body, after), *row)
         for name, body, after, row in zip(names, bodies, (*bodies[1:], 0), figures, strict=True)
     )
+
+
+def _springrefs(model: mujoco.MjModel, body: int) -> list[float]:
+    hinges = [j for j in joints_of(model, body) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE]
+    places = model.jnt_qposadr[hinges]
+    found: list[float] = (model.qpos_spring[places] - model.qpos0[places]).tolist()
+    return found
 
 
 def _rigid(model: mujoco.MjModel, body: int, after: int) -> tuple[str, ...]:

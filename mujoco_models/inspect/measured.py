@@ -56,6 +56,7 @@ class Joint:
     cell: float
     compliance: float  # turn over moment
     angle: float  # its turn at rest [rad]
+    springref: float  # the largest turn at which a spring of its hinges rests [rad]
     damping: float  # of its dampers, the largest [force length time]
     mass: float  # of the body
 

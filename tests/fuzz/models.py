@@ -172,8 +172,7 @@ ADDED = (
     '<compiler angle="degree" balanceinertia="true"/>',
 )  # fmt: skip
 _FEW, _MANY = 13, 35  # links
-_GARBLED = 0.25  # of all
-_SOFT = 0.15  # likewise
+_GARBLED, _SOFT = 0.25, 0.15  # of all
 
 
 def drawn_urdf(rng: random.Random) -> str:
@@ -196,11 +195,7 @@ def _thrice(x: float) -> str:
 
 
 def _changed(**values: object) -> Callable[[Model], None]:
-    def change(model: Model) -> None:
-        for name, value in values.items():
-            setattr(model, name, value)
-
-    return change
+    return lambda model: vars(model).update(values)
 
 
 # What is planted, by the subject of the fault that should name it.

@@ -124,3 +124,41 @@ def test_an_arc_whose_foot_goes_on_as_its_first_link_is_sound(tmp_path, turned, 
 
 def test_an_arc_is_one_number(tmp_path):
     assert curvature(inspect_model(OnRail(curvature=0.5).write(tmp_path)), 21) == pytest.approx(0.5)
+
+
+DEGREE = np.pi / 180
+
+
+@pytest.mark.parametrize(
+    ("curvature", "stated", "faults", "said"),
+    [
+        (1 / DEGREE, None, {"springref"}, ("2.865 rad at a joint", 'springref="0.05"')),
+        (DEGREE, Beam(natural_curvature=1.0), {"natural curvature"}, ('springref="2.865"',)),
+        (DEGREE, None, set(), ('springref="2.865"',)),
+        (0.3, Beam(natural_curvature=1.0), {"natural curvature"}, ()),
+        (3.0, None, set(), ()),
+    ],
+)
+def test_degrees_for_radians_in_springref_are_one_line(tmp_path, curvature, stated, faults, said):
+    found = Inspection(inspect_model(OnRail(curvature=curvature).write(tmp_path)), stated)
+    assert faults_in(found) == faults
+    (line,) = map(str, found.remarks)
+    assert all(words in line for words in said)
+    assert bool(said) == ("springref" in line)
+
+
+@pytest.mark.parametrize("links", [12, 40])
+@pytest.mark.parametrize(
+    ("turns", "kinked"),
+    [({0.5: 0.05}, True), ({0.8: 0.05}, True), ({0.5: 0.015}, False),
+     ({0.3: 0.016, 0.6: -0.016, 0.8: 0.016}, True)],
+)  # fmt: skip
+def test_a_kink_by_which_readings_are_off_is_named(tmp_path, links, turns, kinked):
+    """By 0.05 rad in the middle of twenty links they were 0.8 per cent off, and it was sound."""
+    path = OnRail(links=links).write(tmp_path)
+    text = path.read_text()
+    for share, turn in turns.items():
+        start = f'<body name="whisker{round(share * links)}" '
+        text = text.replace(start, f'{start}euler="0 0 {turn}" ')
+    path.write_text(text)
+    assert faults_in(Inspection(inspect_model(path))) == ({"centreline"} if kinked else set())
