@@ -21,7 +21,9 @@ from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Surface, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
-_BEGIN = 1e-6  # L beyond it, where a contact begins
+# L beyond it, where a contact begins, or at the station if that is nearer: nearer to the touch a
+# bead comes to rest on the upright side of a circle, as if the contour went on so.
+_BEGIN = 1e-6, 1e-3
 _ALONG = 1e-7  # L: as near as the nearest link; MuJoCo's vertices are in single precision
 _FLAT = 5e-3  # L; past a body of a radius of curvature of 100 L it is as near over 4.5e-3 L
 _EDGE = 1e-6  # L, to which it is known where a vibrissa along a face begins to
@@ -99,7 +101,7 @@ class Walk:
             self._at = target
             return
         self.events.append(WalkEvent("touch", touch))
-        self._begin(touch)
+        self._begin(touch, target)
 
     def _clear(self, low: float, high: float) -> float:
         """Where the straight vibrissa comes clear of the body, a little beyond."""
@@ -107,9 +109,10 @@ class Walk:
         assert found is not None
         return min(found + 2 * _TOUCH, high)
 
-    def _begin(self, touch: float) -> None:
+    def _begin(self, touch: float, target: float) -> None:
         """The contact of a vibrissa that is hardly bent."""
-        model, at = self._model, min(touch + _BEGIN, float(self._marks[-1]))
+        model, (least, most) = self._model, _BEGIN
+        at = min(max(touch + least, min(touch + most, target)), float(self._marks[-1]))
         foot = self._foot(at)
         model.place(foot, model.straight)
         nearest, link, s = model.nearest_link()

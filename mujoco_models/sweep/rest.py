@@ -119,15 +119,12 @@ def graded(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[in
 
     A load that has to pass over hundreds of beads is then in a few steps where it belongs.
     """
-    near = around(model, loaded, reach)
-    if not loaded or len(model.obstacle.corners):
-        return near
     count = len(model.layout.beads)
     first, last = min(loaded), max(loaded)
     out = 2 ** np.arange(count.bit_length())
     out = out[out > reach]
     far = np.concatenate([first - out, last + out])
-    return near | frozenset(far[(far >= 0) & (far < count)].tolist())
+    return around(model, loaded, reach) | frozenset(far[(far >= 0) & (far < count)].tolist())
 
 
 def spread(beads: frozenset[int], count: int) -> frozenset[int]:

@@ -104,15 +104,16 @@ def test_smooth_bodies_agree_with_the_closed_form(name):
     assert apart.max() < 2e-3
 
 
-# Flat within reach, and touched on the side above its widest place.
+# Flat within reach, touched on the side above its widest place, and at the widest place itself.
 FLAT = prism(parabola(0.005, 0.6), (0.1, 0.05, 1)), [[9.8, 0.1], [7.4, 0.0]]
 BESIDE = prism(circle(0.17, (0.0, 0.594)), (0.368, 0.412, 0.834)), [[0.4, 0.02], [-0.4, 0.01]]
+UPRIGHT = prism(circle(0.1, (0.0, 0.5))), [[0.12, 0.0], [-0.9, 0.0]]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("body", "points"), [FLAT, BESIDE])
+@pytest.mark.parametrize(("body", "points"), [FLAT, BESIDE, UPRIGHT])
 def test_prisms_are_touched_where_they_are_flat(body, points):
-    """A cylinder of 100 L was off by more than rest allows, and a side had none."""
+    """A cylinder of 100 L was off by more than rest allows, a side had none, and one lost hold."""
     case = SpatialCase(Beam(radius=2e-3), body=body, path=FootPath(points, stations=15))
     exact, found = solve_space(case), simulate_space(case, SpatialSettings(segments=20))
     assert (found.table["status"] == "ok").all()
