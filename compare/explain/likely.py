@@ -7,6 +7,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, Readings
 from analytic.from_clamp.noise import largest, reading_noise, scatter
 from analytic.numerics.arrays import Booleans, Floats, Integers
+from analytic.space import SpatialReadings
 from compare.explain.causes import slopes
 from compare.explain.one_or_two import one_or_two
 from compare.explain.stations import agree_to, ended, lone, next_to_snap_off, without_contact
@@ -38,18 +39,31 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
 def to_find_out(reference: Readings, candidate: Readings) -> str:
     """What to do next where the readings alone do not show a cause."""
     rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
-    advice = {
+    split = {
         "mujoco ": "too few segments and a soft contact err alike: `vibrissa run CASE --budget` "
         "measures the parts of a MuJoCo model",
         "model ": "`vibrissa inspect` names the model's faults, --budget measures the parts",
+    }
+    advice = {
+        **(split if has_budget(reference, candidate) else {}),
         "measured": rig,
         "": "of a simulator, refine one thing at a time (elements, time step, contact, obstacle) "
         f"and see which makes them agree; of a rig, {rig}",
     }
-    # There is no budget past several objects.
-    source = "" if "others" in reference.provenance else candidate.source
-    does = next(to for who, to in advice.items() if source.startswith(who))
+    does = next(to for who, to in advice.items() if candidate.source.startswith(who))
     return f"the readings alone do not show why; {does}"
+
+
+def has_budget(
+    reference: Readings | SpatialReadings, candidate: Readings | SpatialReadings
+) -> bool:
+    """Whether ``run --budget`` can split what MuJoCo's sweep disagrees by: see `measure_budget`."""
+    stated, motion = reference.provenance, candidate.provenance.get("motion")
+    if "others" in stated or stated.get("support", stated).get("friction"):
+        return False
+    if motion is None or reference.running == "foot_x":
+        return True
+    return isinstance(reference, Readings) and motion["average"] == 0
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a reading of 1e150 has a cause, too
@@ -316,4 +330,5 @@ def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) 
     resting = np.median(np.abs(idle / scale[:, None]), axis=1)
     if (resting > jumps / 3).all():
         return f"noise: {size}, and without contact they do too; see `--noise auto`"
-    return f"{_ANGULAR}: {size}, but not without contact; --budget shows which"
+    which = "; --budget shows which" * has_budget(found.reference, found.candidate)
+    return f"{_ANGULAR}: {size}, but not without contact{which}"
