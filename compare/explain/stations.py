@@ -72,14 +72,14 @@ def without_contact(found: Measurement, limits: Tolerances, noise: NoiseAllowanc
     error, at = _error(found, rows), rows["at"].to_numpy()
     allowed = [noise.max(limits.of(n, "max"), n, len(at)) for n in CLAMP_READINGS]
     off = np.asarray((np.abs(error) > np.array(allowed)[:, None]).any(axis=0))
-    begins, between = _begun(found, limits, at)
+    begins, between = begun(found, limits, at)
     off &= ~between
     beside = None if not off.any() else _free(found, off, error, at)
     return "; beside that ".join(filter(None, (begins, beside))) or None
 
 
-def _begun(found: Measurement, limits: Tolerances, at: Floats) -> tuple[str | None, Booleans]:
-    """That the candidate's contact begins late, and which places lie before it does."""
+def begun(found: Measurement, limits: Tolerances, at: Floats) -> tuple[str | None, Booleans]:
+    """That the candidate's contact begins late, and which places its first load lies behind."""
     first, (size, unit) = found.events["first_contact"], found.reference.running_unit
     begin, due, nowhere = first.candidate, first.reference, np.zeros(len(at), dtype=bool)
     if begin is None or due is None:
@@ -88,7 +88,8 @@ def _begun(found: Measurement, limits: Tolerances, at: Floats) -> tuple[str | No
     if way * (begin - due) <= limits.transition * size + first.uncertainty:
         return None, nowhere
     places = f"at {name} = {begin / size:.4g} {unit} instead of {due / size:.4g} {unit}"
-    between = (way * at >= way * due) & (way * at <= way * begin)
+    loaded = found.candidate.running_values[found.judged["candidate"].phase != "free"][0]
+    between = (way * at >= way * due) & (way * at <= way * loaded)
     return f"the contact begins late, {places}, and agrees from there on", between
 
 
