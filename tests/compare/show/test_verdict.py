@@ -61,6 +61,16 @@ def test_a_budget_is_advised_where_there_is_one(bent, reference, motion, advised
     assert ("--budget" in said) == advised
 
 
+@pytest.mark.parametrize(("radii", "said"), [(0.04, False), (0.08, True)])
+def test_a_contact_that_sinks_is_said_where_nothing_else_shows(bent, radii, said):
+    """Past a corner, 0.05 radii in rms are the least limit; 0.4 moved readings by 8e-2."""
+    depth = np.where(bent.reference.table["phase"] == "free", 0.0, radii * 0.005)
+    soft = replace(bent.candidate, table=bent.candidate.table.assign(penetration=depth))
+    told = to_find_out(bent.reference, soft)
+    assert ("the contact sinks by up to 0.08 radii (at foot_x = " in told) == said
+    assert ("3.2 times as stiff, in motion in steps 0.56 times as long" in told) == said
+
+
 def test_the_cause_comes_first_and_the_remark_once():
     found = compare(sweeps.exact("catenary"), by("mine", lambda i: 1.02))
     for text in (repr(found), written_page(found)):
