@@ -48,8 +48,13 @@ def test_where_far_less_is_measured_fewer_segments_do(power, segments, monkeypat
         return 4.6e-5 * (179 / made.provenance["segments"]) ** power
 
     advice = replace(BASE, segments=179), 4.5e-4
-    for name, fake in (("simulate_sweep", swept), ("largest_rms", error),
-                       ("advised", lambda *_: advice), ("solve_sweep", lambda _: None)):  # fmt: skip
+    fakes = {
+        "simulate_sweep": swept,
+        "largest_rms": error,
+        "advised": lambda *_: advice,
+        "solve_sweep": lambda _: None,
+    }
+    for name, fake in fakes.items():
         monkeypatch.setattr(target, name, fake)
     found = target.follow_advice(None, None, None, 5e-4)
     assert found.settings.segments == segments
