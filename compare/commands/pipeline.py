@@ -22,6 +22,7 @@ from compare.explain.parts import Parted
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
 from compare.read.runs import EngineOutcome
+from compare.sense.noise import scales
 from compare.show.document import Film
 from compare.show.report import summary_of, write_report
 from compare.show.side_by_side import SideBySide, reasons, summary, write_side_by_side
@@ -65,6 +66,8 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
 
 
 def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: Asked) -> bool:
+    if isinstance(exact, Readings):
+        scales(exact)  # without a contact nothing can be compared
     with waiting("loading MuJoCo"):
         from compare.commands.budget import Measured, measured
 

@@ -108,8 +108,7 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
         found.reference, table["at"].to_numpy(), found.snap_off, limits.snap_off_window
     )
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
-    _, before = begun(found, limits, table["at"].to_numpy())
-    table = table[~window & sound & ~before].reset_index(drop=True)
+    table = table[~window & sound].reset_index(drop=True)
     scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
     true, seen = (
         np.stack([table[f"{name}_{which}"] for name in CLAMP_READINGS]) / scale[:, None]
@@ -126,8 +125,11 @@ def _cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str
     doubted = [*_doubted(found)] if many and not notes else []
     if (notes or doubted or short) and agree_to(error, limits, noise):
         return "; ".join([*notes, *doubted, *short])
-    agree = agree_to(error, limits, noise)
-    cause = lone(found, error, table["at"].to_numpy(), limits, noise)
+    at = table["at"].to_numpy()
+    _, before = begun(found, limits, at)
+    after = error[:, ~before]
+    agree = agree_to(after, limits, noise)
+    cause = lone(found, after, at[~before], limits, noise)
     if cause is None and agree:
         cause = without_contact(found, limits, noise) or next_to_snap_off(found, limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
