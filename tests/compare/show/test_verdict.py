@@ -56,8 +56,8 @@ def test_advice_fits_the_source(bent, source, advice, others):
 )
 def test_a_budget_is_advised_where_there_is_one(bent, reference, motion, advised):
     """With friction it was advised, and refused."""
-    told = replace(bent.candidate, source="mujoco chain", provenance={"motion": motion})
-    said = to_find_out(replace(bent.reference, provenance=reference), told)
+    moved = replace(bent.candidate, source="mujoco chain", provenance={"motion": motion})
+    said = to_find_out(replace(bent.reference, provenance=reference), moved)
     assert ("--budget" in said) == advised
 
 
@@ -66,9 +66,9 @@ def test_a_contact_that_sinks_is_said_where_nothing_else_shows(bent, radii, said
     """Past a corner, 0.05 radii in rms are the least limit; 0.4 moved readings by 8e-2."""
     depth = np.where(bent.reference.table["phase"] == "free", 0.0, radii * 0.005)
     soft = replace(bent.candidate, table=bent.candidate.table.assign(penetration=depth))
-    told = to_find_out(bent.reference, soft)
-    assert ("the contact sinks by up to 0.08 radii (at foot_x = " in told) == said
-    assert ("3.2 times as stiff, in motion in steps 0.56 times as long" in told) == said
+    advice = to_find_out(bent.reference, soft)
+    assert ("the contact sinks by up to 0.08 radii (at foot_x = " in advice) == said
+    assert ("3.2 times as stiff, in motion in steps 0.56 times as long" in advice) == said
 
 
 def test_the_cause_comes_first_and_the_remark_once():
