@@ -25,6 +25,7 @@ STATUSES = (
     "touches another",
     "sticks",
     "creeping",
+    "sunk",
 )
 SECOND_CONTACT = (
     "second_contact_force",

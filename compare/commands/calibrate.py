@@ -1,12 +1,17 @@
 """The command ``calibrate``: what a vibrissa is, from a sweep past an object that is known."""
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from analytic.problem.errors import InputError
 from compare.commands import options as opt
 from compare.commands.output import check_own, distinct_name, output_folder, waiting
+
+if TYPE_CHECKING:
+    from analytic import Case, Readings
 
 KNOWN = "a sweep past a known object"
 
@@ -75,6 +80,8 @@ def calibrate(
         if LAG not in found.found and (said := lag_remembered(passes)) is not None:
             terminal.print_line(f"{said}: fit lag too, or correct the case")
         terminal.show(*calibration_summary(found))
+        for line in [] if found.explains else _one_more(passes, known, [*found.found], sizes):
+            terminal.print_line(line)
         if not found.explains and (why := doubt_of_case(passes[0], known)) is not None:
             terminal.print_line(str(why))
         terminal.keep(folder / "calibration.json", calibration_document(found))
@@ -93,3 +100,21 @@ def calibrate(
             of = f"vibrissa reconstruct FILE... --beam {made}{shift}"
             terminal.print_line(f"  of unknown objects with this vibrissa: {of}")
     return found.explains
+
+
+def _one_more(
+    passes: "list[Readings]", known: "Case", names: list[str], noise: Mapping[str, float] | None
+) -> Iterator[str]:
+    """The unknowns of which each, fitted too, leaves no more than the noise."""
+    from analytic import calibrate as calibrate_case
+    from analytic.from_clamp.calibration.unknowns import UNKNOWNS
+
+    for name in sorted(UNKNOWNS.keys() - names):
+        try:
+            with waiting(f"fitting {name} too"):
+                found = calibrate_case(passes, known, [*names, name], noise)
+        except InputError:
+            continue
+        if found.explains:
+            also = ",".join([*names, name])
+            yield f"fitted too, {name} {found.found[name]} explains the readings: --fit {also}"

@@ -17,10 +17,12 @@ from compare.commands.output import waiting
 from compare.commands.sweeping import AnyReadings, printed, simulated, sweep_file
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
+from compare.explain.likely import has_budget
 from compare.explain.parts import Parted
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
 from compare.read.runs import EngineOutcome
+from compare.sense.noise import scales
 from compare.show.document import Film
 from compare.show.report import summary_of, write_report
 from compare.show.side_by_side import SideBySide, reasons, summary, write_side_by_side
@@ -64,6 +66,8 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
 
 
 def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: Asked) -> bool:
+    if isinstance(exact, Readings):
+        scales(exact)  # without a contact nothing can be compared
     with waiting("loading MuJoCo"):
         from compare.commands.budget import Measured, measured
 
@@ -85,8 +89,8 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
             terminal.print_line(str(fault))
     elif isinstance(job, Job) and job.motion is not None and isinstance(found, Comparison):
         _print_beside_rest(job, found, folder)
-    several = isinstance(job, Job) and job.case.others
-    more = "" if asked.budget or several else "; --budget adds what the disagreement is made of"
+    more = "; --budget adds what the disagreement is made of"
+    more *= not asked.budget and has_budget(exact, split.base)
     terminal.print_report(written, more)
     return found.agrees and possible and split.reached
 

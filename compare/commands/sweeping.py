@@ -39,6 +39,7 @@ _MEANINGS = {
     "with friction, take cone elliptic and impratio 100",
     "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
     "cone elliptic with impratio 100, a faster foot, or harder contacts in shorter steps",
+    "sunk": ": the contact is deeper than the vibrissa's radius; take harder ones in shorter steps",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",

@@ -72,8 +72,29 @@ def without_contact(found: Measurement, limits: Tolerances, noise: NoiseAllowanc
     error, at = _error(found, rows), rows["at"].to_numpy()
     allowed = [noise.max(limits.of(n, "max"), n, len(at)) for n in CLAMP_READINGS]
     off = np.asarray((np.abs(error) > np.array(allowed)[:, None]).any(axis=0))
-    if not off.any():
-        return None
+    begins, between = begun(found, limits, at)
+    off &= ~between
+    beside = None if not off.any() else _free(found, off, error, at)
+    return "; beside that ".join(filter(None, (begins, beside))) or None
+
+
+def begun(found: Measurement, limits: Tolerances, at: Floats) -> tuple[str | None, Booleans]:
+    """That the candidate's contact begins late, and which places its first load lies behind."""
+    first, (size, unit) = found.events["first_contact"], found.reference.running_unit
+    begin, due, nowhere = first.candidate, first.reference, np.zeros(len(at), dtype=bool)
+    if begin is None or due is None:
+        return None, nowhere
+    way, name = direction(found.reference), found.reference.running
+    if way * (begin - due) <= limits.transition * size + first.uncertainty:
+        return None, nowhere
+    places = f"at {name} = {begin / size:.4g} {unit} instead of {due / size:.4g} {unit}"
+    loaded = found.candidate.running_values[found.judged["candidate"].phase != "free"][0]
+    between = (way * at >= way * due) & (way * at <= way * loaded)
+    return f"the contact begins late, {places}, and agrees from there on", between
+
+
+def _free(found: Measurement, off: Booleans, error: Floats, at: Floats) -> str:
+    """What is off where one sweep is free."""
     said = _off(found, off, error, at, "where a sweep is free")
     if off.sum() == 1:
         return f"single stations: {said}; all others agree"

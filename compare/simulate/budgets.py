@@ -83,10 +83,14 @@ def measure_budget(
     Raises
     ------
     InputError
-        If the settings cannot be refined from, or the sweeps have no station in common.
+        If the case has friction or several objects, the settings cannot be refined from, or the
+        sweeps have no station in common.
     DivergedError
         If a sweep that the budget cannot do without is not a number any more.
     """
+    if case.friction:
+        allowed, remedy = "0 for a budget, whose sweeps at rest know none", "take --budget away"
+        raise InputError("friction", case.friction, allowed, remedy)
     if isinstance(case, SpatialCase):
         if motion is not None:  # whose disagreement nothing splits
             raise InputError("motion", "given", "none for a budget in space", "take it at rest")
@@ -97,6 +101,7 @@ def measure_budget(
             exact = solve_space(case)
             runs = {name: one.result() for name, one in swept.items()}
         return budget_in_space(exact, runs, changes), runs
+    case.require_one_object("a budget")
     chosen = Settings() if settings is None else settings
     planar = require("settings", chosen, Settings, _REMEDY)
     if motion is None:

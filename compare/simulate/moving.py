@@ -1,6 +1,7 @@
 """The budget of a sweep in motion: all the sweeps that it takes, on all cores."""
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import as_completed
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -44,7 +45,6 @@ def budget_in_motion(
     many links, and ``beam`` is the closed form of the vibrissa that was measured less that of the
     one that is stated.
     """
-    case.require_one_object("a budget in motion")
     if motion.average:
         case.require_sweep("a budget in motion")
     sweeps: dict[str, tuple[Any, ...]]
@@ -57,13 +57,16 @@ def budget_in_motion(
         resting = replace(settings, segments=max(len(found.joints), 2))
         of_model = slower_and_finer_of_model(model, motion)
         sweeps = {name: (moved, changed) for name, (changed, moved) in of_model.items()}
-    tasks = {name: (simulate, case, settings, *one) for name, one in sweeps.items()}
+    # The last ones take the most steps, and are the first to be refused.
+    last_first = reversed(sweeps.items())
+    tasks = {name: (simulate, case, settings, *one) for name, one in last_first}
     rest = (sweep_as_means, case, resting, motion.average)
     runs: dict[str, Readings] = {}
-    with running({**tasks, "rest": rest}, advance) as swept:
-        for name, sweep in swept.items():
-            with suppress(*[DivergedError] * (name in OPTIONAL)):
-                runs[name] = sweep.result()
+    with running({"rest": rest, **tasks}, advance) as swept:
+        names: dict[Any, str] = {sweep: name for name, sweep in swept.items()}
+        for sweep in as_completed(names):
+            with suppress(*[DivergedError] * (names[sweep] in OPTIONAL)):
+                runs[names[sweep]] = sweep.result()
     if model is not None:
         no_ours = "ours" in sweeps and "ours" not in runs
         if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):

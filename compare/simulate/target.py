@@ -20,6 +20,7 @@ _BEAM = 0.8  # of what is left of its square; the facets get the rest, for they 
 # to be more, the faster where there are to be fewer.
 _MORE_FACETS, _FEWER_FACETS = 1, 2
 _SEGMENTS, _POINTS = (5, 1000), (100, 25_600)
+_FAR = 0.5  # of the target; fewer segments do
 _TRIES = 8
 _CHATTER = 0.1  # fraction of the stations in contact; what is left of such a sweep says little
 _NEAR = 1.1  # a speed that is known to within a tenth is good enough
@@ -46,10 +47,22 @@ class Followed:
 def follow_advice(
     case: Case, found: Budget, runs: Mapping[str, Readings], target: float
 ) -> Followed:
-    settings, predicted = advised(found, runs, target)
-    made = simulate_sweep(case, settings)
-    seconds = float(made.provenance["seconds"]) / len(made.table)
-    return Followed(target, settings, predicted, largest_rms(solve_sweep(case), made), seconds)
+    """What is advised, as measured; again with fewer segments if those leave far less."""
+    exact = solve_sweep(case)
+
+    def measured(settings: Settings, predicted: float) -> Followed:
+        made = simulate_sweep(case, settings)
+        seconds = float(made.provenance["seconds"]) / len(made.table)
+        return Followed(target, settings, predicted, largest_rms(exact, made), seconds)
+
+    first = measured(*advised(found, runs, target))
+    if first.error > _FAR * target or first.settings.clamp == "naive":
+        return first
+    wanted = first.settings.segments * math.sqrt(first.error / (_FRACTION * target))
+    segments = max(math.ceil(wanted), _SEGMENTS[0])
+    expected = first.error * (first.settings.segments / segments) ** 2
+    again = measured(replace(first.settings, segments=segments), expected)
+    return again if again.reached else first
 
 
 def advised(found: Budget, runs: Mapping[str, Readings], target: float) -> tuple[Settings, float]:

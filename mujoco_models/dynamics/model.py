@@ -73,7 +73,7 @@ class MovingModel(SteppedModel):
         self._object_of = self._surface.objects(self.model, obstacles)
         self._is_object = ~self._surface.moves
         geoms = np.concatenate([self._surface.beads, self._surface.sides])
-        self._set_contacts(motion, geoms)
+        self._set_contacts(motion, geoms, corners=len(self._surface.sides) > 0)
         self.model.geom_gap[geoms] = 0  # a contact that carries no force costs time
         # Runge and Kutta's method looks for contacts on the way of a step, too.
         upright = all(obstacle.upright for obstacle in self._obstacles)
@@ -187,11 +187,13 @@ class MovingModel(SteppedModel):
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""
         contacts = self.contacts()
+        places = self._places(contacts)
+        touched = contacts.of_places(self.data.contact.pos[:, :2], places, self._push)
         return {
             "tip_angle": self.tip_angle,
-            "status": "creeping" if self._creeps(speed) else "ok",
+            "status": self._status(speed, touched["penetration"]),
             "kinetic_share": self.kinetic_share(),
-            **contacts.of_places(self.data.contact.pos[:, :2], self._places(contacts), self._push),
+            **touched,
         }
 
     def _places(self, contacts: Contacts) -> list[Booleans]:

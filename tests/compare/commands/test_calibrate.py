@@ -74,6 +74,22 @@ def test_what_varies_along_a_vibrissa_is_stretched_with_its_length(tmp_path):
 STRAIGHT = Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(60))
 
 
+@pytest.mark.slow
+def test_what_explains_the_readings_if_it_is_fitted_too_is_named(tmp_path):
+    """Of a clamp that leaned it was "a sign, a unit, the object's place", and a lag."""
+    leant = solve_sweep(replace(STRAIGHT, clamp_angle=0.03))
+    size, rng = relative_noise(leant, 1e-3), np.random.default_rng(2)
+    noise = {n: leant.values(n) + x * white(rng, 60) for n, x in size.items()}
+    leant.table.assign(**noise)[[*SENSED]].to_csv(tmp_path / "leant.csv", index=False)
+    (tmp_path / "object.toml").write_text(OBJECT)
+    done = vibrissa("calibrate", "leant.csv", "object.toml", cwd=tmp_path)
+    done.ended(1)
+    (line,) = (x for x in done.stdout.splitlines() if x.startswith("fitted too, "))
+    assert line.split()[2] == "clamp_angle"
+    assert float(line.split()[3]) == pytest.approx(0.03, abs=3e-4)
+    assert "--fit flexural_rigidity,clamp_angle" in done.stdout
+
+
 def said_of(count, noise, stated):
     """Lines of a calibration from passes with noise, known to be of another size."""
     exact, rng = solve_sweep(STRAIGHT), np.random.default_rng(2)

@@ -98,6 +98,20 @@ def test_single_stations_are_few_and_far_off(times, spikes, single):
     assert str(named(force)).startswith("single stations") == single
 
 
+@pytest.mark.parametrize("by", [0.03, 0.1, 0.3])
+def test_a_contact_that_begins_late_is_named(by):
+    """It was nothing, "single stations", or a vibrissa that has to come to rest."""
+    exact = exact_sweep("parabola")
+    late = exact.values("foot_x") > exact.provenance["events"]["first_contact"] - by
+    seen = {n: np.where(late, 0.0, exact.values(n)) for n in CLAMP_READINGS}
+    for share in (0.0, 0.3):  # of the load at the station before
+        for name in CLAMP_READINGS:
+            seen[name][late.sum() - 1] = share * exact.values(name)[late.sum() - 1]
+        said = str(compare(exact, sensed(changed(exact, **seen))).likely)
+        assert said.startswith("the contact begins late, at foot_x = ")
+        assert said.endswith(" L instead of 1.007 L, and agrees from there on")
+
+
 @pytest.mark.parametrize("drift", [0.0, 0.05, 0.3, 1.0])
 def test_a_zero_is_named_with_a_drift_that_shows_beside_it(drift):
     """Of 0.05 a hundredth is left, rms, which is not looked into."""

@@ -7,6 +7,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, Case, Readings, Sweep, circle, ellipse, solve_sweep
 from compare import compare
+from compare.explain.likely import to_find_out
 from compare.show.verdict import absent_transitions, why
 from tests.compare.show import sweeps
 from tests.compare.show.pages import written_page
@@ -42,6 +43,32 @@ def test_advice_fits_the_source(bent, source, advice, others):
     vars(found)["likely"] = None  # for nothing else has changed
     assert advice in why(found)
     assert not any(other in why(found) for other in others)
+
+
+@pytest.mark.parametrize(
+    ("reference", "motion", "advised"),
+    [
+        ({}, None, True),
+        ({"others": [[[0.0, 1.0], [0.0, 1.0]]]}, None, False),
+        ({"support": {"friction": 0.0}}, {"average": 1.0}, True),
+        ({"support": {"friction": 0.2}}, {"average": 1.0}, False),
+    ],
+)
+def test_a_budget_is_advised_where_there_is_one(bent, reference, motion, advised):
+    """With friction it was advised, and refused."""
+    moved = replace(bent.candidate, source="mujoco chain", provenance={"motion": motion})
+    said = to_find_out(replace(bent.reference, provenance=reference), moved)
+    assert ("--budget" in said) == advised
+
+
+@pytest.mark.parametrize(("radii", "said"), [(0.04, False), (0.08, True)])
+def test_a_contact_that_sinks_is_said_where_nothing_else_shows(bent, radii, said):
+    """Past a corner, 0.05 radii in rms are the least limit; 0.4 moved readings by 8e-2."""
+    depth = np.where(bent.reference.table["phase"] == "free", 0.0, radii * 0.005)
+    soft = replace(bent.candidate, table=bent.candidate.table.assign(penetration=depth))
+    advice = to_find_out(bent.reference, soft)
+    assert ("the contact sinks by up to 0.08 radii (at foot_x = " in advice) == said
+    assert ("3.2 times as stiff, in motion in steps 0.56 times as long" in advice) == said
 
 
 def test_the_cause_comes_first_and_the_remark_once():

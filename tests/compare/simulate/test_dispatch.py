@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import InputError, Sweep, named_case
+from analytic import InputError, Sweep, circle, named_case
 from analytic.space import FootPath, SpatialCase, SpatialReadings, sphere
 from compare import measure_budget
 from compare.simulate import budgets
@@ -64,3 +64,11 @@ def test_each_kind_of_case_has_its_budget(monkeypatch):
     assert asked[0][:2] == (CASE, Settings())
     assert asked[1][:4] == (CASE, motion, COARSE, None)
     assert asked[2][:4] == (CASE, motion, COARSE, model)
+    # What some of its sweeps would refuse is refused before the first: it took four minutes.
+    for refused, name in (
+        (replace(CASE, friction=0.2), "friction"),
+        (replace(CASE, others=(circle(0.1, (-1.0, 0.3)),)), "number of objects"),
+    ):
+        with pytest.raises(InputError, match=rf"^{name} = .* a budget"):
+            measure_budget(refused, COARSE, motion=motion)
+    assert len(asked) == 3

@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CLAMP_READINGS, Beam, InputError, Sweep, named_case, solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Sweep,
+    named_case,
+    polygon,
+    solve_sweep,
+)
 from analytic.problem.table import says
 from analytic.space import FootPath, SpatialCase, cylinder, solve_space, sphere
 from analytic.space.problem.readings import FORCE, FRICTION, MOMENT
@@ -90,6 +99,30 @@ def test_a_step_in_which_friction_overshoots_is_refused():
     simulate_motion(short, Motion(contact_stiffness=1e3, timestep=step, speed=0.5), settings)
     with pytest.raises(InputError, match=r"^motion\.timestep"):
         simulate_motion(CASE, Motion(solref=(0.01, 1.0)), Settings(segments=6))
+    with pytest.raises(InputError, match=r"contact_stiffness = 2e4, timestep = 0\.00045$"):
+        simulate_motion(WEDGE, Motion(cone="elliptic"), Settings(segments=6))
+
+
+WEDGE = Case(
+    Beam(radius=0.0033),
+    polygon([(-0.17, 0.58), (0.21, 0.5), (0.25, 0.75), (-0.12, 0.79)]),
+    Sweep(14, start=0.27, stop=-0.38),
+    friction=0.2,
+)
+
+
+@pytest.mark.slow
+def test_a_corner_past_the_axis_says_so():
+    """Readings were off by 36 to 85 %, and all stations ok."""
+    known, quick = solve_sweep(WEDGE).values("force_y"), replace(SLOW, speed=0.1, impratio=100.0)
+    for stiffness, step, sinks in ((1e3, 0.002, True), (2e4, 0.00045, False)):
+        motion = replace(quick, contact_stiffness=stiffness, timestep=step)
+        moved = simulate_motion(WEDGE, motion, Settings(segments=20))
+        deep = says(moved.table["status"], "sunk")
+        assert (deep == (moved.values("penetration") > WEDGE.radius)).all()
+        assert deep.any() == sinks
+        off = np.abs(moved.values("force_y") - known).max() / np.abs(known).max()
+        assert (off > 0.2) == sinks, off
 
 
 @pytest.mark.slow
