@@ -65,8 +65,8 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
         elif rest.angle == 0:
             name, what = "beam.natural_curvature", f"{rest.natural:.6g}/L at the tip"
         allowed = f"such that it does not lean over the upper side of the object ({contour.label})"
-        remedy = "lessen it, or raise the object's widest place above the tip: only its lower side "
-        remedy += "can be touched"
+        remedy = "lessen it, take sweeps the other way alone, or raise the object's widest place "
+        remedy += "above the tip: only its lower side can be touched"
         raise InputError(name, what, allowed, remedy)
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
     tangents = zeros(lambda _, t: lean(t), grid[crossings + 1], grid[crossings])

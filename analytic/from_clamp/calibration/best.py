@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import softmax
 
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured
@@ -16,7 +17,8 @@ from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError
 
 _CLEARLY = 4.0  # standard deviations; by chance once in 10^4 sweeps
-_JITTER_ROUNDS = 100  # of expectation and maximum: 1e-3 of the sizes
+_TRIED = 60  # sizes of a jitter
+_INDEPENDENT = 2 / 3
 
 
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
@@ -32,13 +34,14 @@ _NO_BEND = 1e-3  # of the zero's uncertainty: that of a bend which there is not
 
 def foot_jitter(
     left: Floats, slopes: Floats, rows: Sequence[int] | None = None
-) -> tuple[float, Floats]:
-    """Standard deviation of the foot's place, and what each reading has of its own.
+) -> tuple[float, Floats, bool]:
+    """Standard deviation of the foot's place, what each reading has of its own, whether it shows.
 
-    The first is 0 if it does not stand out. By the EM algorithm on differences between neighbouring
-    stations, in which what is smooth cancels. Without jitter the products of two readings'
-    differences scatter about zero. Of what a fit leaves over some sizes, and the slopes over the
-    foot position over the same, each shape (n, readings); `rows` by pass, by default of one.
+    By differences between neighbouring stations, in which what is smooth cancels. The first is the
+    root of its mean square over all that these allow: one that hides may be there. It shows where
+    the products of two readings' differences do not scatter about zero. Of what a fit
+    leaves over some sizes, and the slopes over the foot position over the same, each shape (n,
+    readings); `rows` by pass, by default of one.
     """
     between = np.cumsum([len(left)] if rows is None else rows)[:-1] - 1  # passes: no steps
     steps = np.delete(np.diff(left, axis=0) / np.sqrt(2), between, axis=0)
@@ -47,20 +50,38 @@ def foot_jitter(
     one, other = np.triu_indices(len(own), 1)
     sizes = np.sqrt(own)
     if not sizes.all():
-        return 0.0, sizes
+        return 0.0, sizes, False
     together = ways[:, one] * ways[:, other] / (sizes[one] * sizes[other])
     products = steps[:, one] * steps[:, other] / (sizes[one] * sizes[other])
     weight = np.sum(together**2)
-    if not np.sum(together * products) > _CLEARLY * np.sqrt(weight):
-        return 0.0, sizes
-    variance = np.sum(together * products) / weight
-    for _ in range(_JITTER_ROUNDS):
-        spread = 1 / (1 / variance + np.sum(ways**2 / own, axis=1))
-        moved = spread * np.sum(ways * steps / own, axis=1)
-        variance = np.mean(moved**2 + spread)
-        along = ways * moved[:, None]
-        own = np.mean((steps - along) ** 2 + ways**2 * spread[:, None], axis=0)
-    return float(np.sqrt(variance)), np.sqrt(own)
+    if not weight:
+        return 0.0, sizes, False
+    variance, scatter = max(np.sum(together * products), 0.0) / weight, 1 / np.sqrt(weight)
+    most = 2 * np.sqrt(variance) + np.sqrt(_CLEARLY * scatter)
+    tried, likely, each = most * np.linspace(0, 1, _TRIED + 1)[1:], [], []
+    for deviation in tried:
+        for _ in range(_ROUNDS):
+            own = _own(steps, ways, own, deviation**2)
+        # Of two neighbours' steps the station between is in both: they count as fewer.
+        likely.append(_INDEPENDENT * _likelihood(steps, ways, own, deviation**2))
+        each.append(own)
+    share = softmax(likely)
+    shows = bool(variance > _CLEARLY * scatter)
+    return float(np.sqrt(share @ tried**2)), np.sqrt(share @ np.array(each)), shows
+
+
+def _own(steps: Floats, ways: Floats, own: Floats, variance: float) -> Floats:
+    """One step of expectation and maximum (EM): the variance of each reading beside the foot's."""
+    spread = 1 / (1 / variance + np.sum(ways**2 / own, axis=1))
+    along = ways * (spread * np.sum(ways * steps / own, axis=1))[:, None]
+    return np.asarray(np.mean((steps - along) ** 2 + ways**2 * spread[:, None], axis=0))
+
+
+def _likelihood(steps: Floats, ways: Floats, own: Floats, variance: float) -> float:
+    """Logarithm of the steps' probability, but for a constant."""
+    shown = 1 + variance * np.sum(ways**2 / own, axis=1)
+    along = variance * np.sum(ways * steps / own, axis=1) ** 2 / shown
+    return -float(np.sum(np.log(shown) + np.sum(steps**2 / own + np.log(own), axis=1) - along)) / 2
 
 
 def fitted_to_noise(
@@ -68,7 +89,8 @@ def fitted_to_noise(
 ) -> tuple[LeastSquaresFit, Floats, float, Estimated]:
     """The fit, its best numbers, what it leaves over the noise, and what that makes of them."""
     fit, numbers, cost = _fitted(fit)
-    jittered = _with_jitter(fit, numbers) if cost > ROUNDING**2 * fit.freedom else None
+    noisy = cost > ROUNDING**2 * fit.freedom
+    jittered = _with_jitter(fit, numbers, stated) if noisy else None
     if jittered is not None:
         fit = fit.of(jittered)
     first = numbers
@@ -154,8 +176,11 @@ def _inside(fit: LeastSquaresFit, numbers: Floats) -> Floats:
     return np.clip(numbers, fit.lowest, fit.highest)
 
 
-def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
-    """The stations with the jitter of the foot that what is left shows; None if it shows none."""
+def _with_jitter(fit: LeastSquaresFit, numbers: Floats, stated: bool) -> Measured | None:
+    """The stations with the jitter of the foot that what is left shows, or may hide.
+
+    None if it shows none and the noise is stated, which would have it.
+    """
     measured = fit.measured
     foot, *sizes = measured.spread
     if foot > 0:
@@ -163,9 +188,11 @@ def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
     expected = fit.expected(numbers)
     over = np.array(sizes)
     left, slopes = expected - measured.readings, measured.slopes(expected)
-    jitter, own = foot_jitter(left.T / over, slopes.T / over, measured.rows)
-    own = np.maximum(own * over, measured.free)
-    return replace(measured, spread=np.array([jitter, *own])) if jitter else None
+    jitter, own, shows = foot_jitter(left.T / over, slopes.T / over, measured.rows)
+    if not jitter or (stated and not shows):
+        return None
+    spread = np.array([jitter, *np.maximum(own * over, measured.free)])
+    return replace(measured, spread=spread, jitter=jitter if shows else 0.0)
 
 
 def _knowing_the_noise(

@@ -242,7 +242,7 @@ def calibrate(
         not explained_by_noise(misfit, fit.freedom, fit.measured.vague),
         known.noise,
         known.noise.judged_by(fit.measured.rests),
-        float(fit.measured.spread[0]),
+        fit.measured.jitter,
         alike,
         {name: (one.highest - one.lowest) / 2 for name, one in scattered.items() if name != LAG},
         len(set(measured.ways)) > 1,

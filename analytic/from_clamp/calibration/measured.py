@@ -49,6 +49,7 @@ class Measured:
     # Stations off the contact, which show the size of noise that remembers; None if it is stated,
     # or a rig says it.
     rests: int | None
+    jitter: float = 0.0  # of the foot position, if it stands out of the noise [length]
 
     @classmethod
     def of(

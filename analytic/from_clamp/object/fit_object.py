@@ -118,7 +118,8 @@ def fit_object(
         family,
         FAMILIES,
         fit,
-        "several objects, a corner, friction, or a vibrissa or clamp that is not as stated",
+        "several objects, a corner, friction, a contact above the object's widest place, or a "
+        "vibrissa or clamp that is not as stated",
     )
 
 

@@ -201,11 +201,25 @@ def test_memory_and_hum_are_described():
 def test_jitter_of_the_foot_is_found_and_no_other_noise_is_taken_for_it(seed):
     readings, slopes = sweep()
     rng = np.random.default_rng(seed)
-    found, own = foot_jitter(jitter(rng, readings.shape), slopes)
+    found, own, shows = foot_jitter(jitter(rng, readings.shape), slopes)
+    assert shows
     assert found == pytest.approx(JITTER, rel=0.2)
     assert own == pytest.approx(np.full(3, 0.1), rel=0.4)
     for kind in (white, autoregressive(0.9), walk):
-        assert foot_jitter(kind(rng, readings.shape), slopes)[0] == 0
+        assert not foot_jitter(kind(rng, readings.shape), slopes)[2]
+
+
+@pytest.mark.parametrize("size", [5e-3, 2e-2])
+def test_a_jitter_that_hides_is_expected_as_large_as_it_is(size):
+    """Of the smaller one, which stands out in one of 40 sweeps, intervals knew nothing."""
+    readings, slopes = sweep()
+    rng = np.random.default_rng(0)
+    found = []
+    for _ in range(40):
+        moved = size * rng.standard_normal((len(slopes), 1)) * slopes
+        found.append(foot_jitter(white(rng, readings.shape) + moved, slopes))
+    assert np.sqrt(np.mean([jitter**2 for jitter, *_ in found])) == pytest.approx(size, rel=0.2)
+    assert np.mean([shows for *_, shows in found]) == pytest.approx(float(size > 1e-2), abs=0.1)
 
 
 def test_a_reading_that_depends_on_nothing_fitted_shows_its_noise_alone():
