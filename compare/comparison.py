@@ -175,7 +175,7 @@ class SpatialComparison(Judged[SpatialReadings], SpatialMeasurement):
     @cached_property
     def likely(self) -> str | None:
         """What the disagreement looks like; None if it agrees, or matches no known mistake."""
-        return None if self.agrees else likely_in_space(self, self.noise.level)
+        return None if self.agrees else likely_in_space(self, self.tolerances, self.noise)
 
     @property
     def largest(self) -> str:

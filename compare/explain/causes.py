@@ -19,6 +19,7 @@ from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says
 from compare.align.stations import interpolant
 from compare.explain.signatures import Resolved, between, unit_of
+from compare.explain.wiring import LARGER, scaled_alike
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
 
@@ -81,7 +82,7 @@ def sensor_faults(true: Floats) -> Iterator[Cause]:
     for one, name, row in zip(np.eye(3), CLAMP_READINGS, true, strict=True):
         only = one[:, None]
         text = f"gain of {name} {{:+.2%}} off, the other readings are right"
-        yield Cause(text.format, only * row, -0.8, 2.0, acts=partial(_scaled, only))
+        yield Cause(text.format, only * row, *LARGER, acts=partial(_scaled, only))
         text = f"zero of {name} off by {{:+.2e}} {of_largest} at all stations"
         yield Cause(text.format, only * np.ones_like(row), -2.0, 2.0)
         text = f"drift of {name} by {{:+.2e}} {of_largest} over the sweep"
@@ -98,12 +99,13 @@ def physical_faults(
     found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats
 ) -> Iterator[Cause]:
     """Faults of the vibrissa and the stage, those that need the contour last."""
-    # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
-    text = "flexural rigidity {:+.2%} off: all readings scale alike"
-    yield Cause(text.format, true, -0.8, 2.2, acts=partial(_scaled, np.ones((3, 1))))
+    every = np.ones((3, 1))
+    yield Cause(
+        lambda size: scaled_alike(1 + size, "readings"), true, *LARGER, acts=partial(_scaled, every)
+    )
     reference, name = found.reference, found.reference.running
     size_of, unit = reference.running_unit
-    x, slope, every = table["at"].to_numpy(), slopes(table, true), np.ones((3, 1))
+    x, slope = table["at"].to_numpy(), slopes(table, true)
     places, rows = (
         reference.running_values,
         np.stack([reference.values(name) for name in CLAMP_READINGS]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import permutations, product
 
 import numpy as np
@@ -12,6 +12,10 @@ from analytic.numerics.arrays import Floats
 from analytic.space import reconstruct_space, wrench_complaint
 from analytic.space.problem.readings import FOOT, FORCE, MOMENT
 from compare.align.frames import COMPONENTS, clamp_axes
+from compare.explain.stations import agree_to, lone, without_contact
+from compare.explain.wiring import scaled_alike
+from compare.judge.allowance import SpatialAllowance
+from compare.judge.tolerances import SpatialTolerances
 from compare.measure.in_space import SpatialMeasurement
 
 _NEARLY_ALL = 0.05  # of the disagreement's rms: what a mistake may leave of it, beside noise
@@ -24,10 +28,16 @@ _UNITS = {1e3: "1000", 1e-3: "1/1000"}
 _SAME_UNIT = 0.02  # of such a factor; as far as a simulator's own error may move it
 
 
-def likely_in_space(found: SpatialMeasurement, noise: Mapping[str, float]) -> str | None:
+def likely_in_space(
+    found: SpatialMeasurement, limits: SpatialTolerances, noise: SpatialAllowance
+) -> str | None:
     """The mistake that explains nearly all of it, or what no vibrissa's clamp can read."""
     if not found.compared.any():
         return None
+    both = found.error[:, found.compared]
+    single = lone(found, both, found.travel[found.compared], limits, noise)
+    if single or agree_to(both, limits, noise):
+        return single or without_contact(found, limits, noise)
     true, seen = (
         np.stack([side.values(*names)[found.compared] for names in (FORCE, MOMENT)])
         for side in (found.reference, found.candidate)
@@ -35,7 +45,7 @@ def likely_in_space(found: SpatialMeasurement, noise: Mapping[str, float]) -> st
     scale = np.array([found.disagreement[names[0]].scale for names in (FORCE, MOMENT)])
     error = (seen - true) / scale[:, None, None]
     off = _rms(error)
-    jumps = _DRAWN * _rms(np.array([*noise.values()]))
+    jumps = _DRAWN * _rms(np.array([*noise.level.values()]))
     best, least = None, np.hypot(_NEARLY_ALL * off, jumps) / _FIRST
     tried = true.shape[1] >= _FEWEST and jumps <= _HIDES * off
     for text, read in _mistakes(found, true, seen) if tried else ():
@@ -93,7 +103,8 @@ def _sizes(true: Floats, seen: Floats) -> Iterator[tuple[str, Floats]]:
     """All components alike, or forces or moments in another unit."""
     sizes = (seen * true).sum(axis=(1, 2)) / (true * true).sum(axis=(1, 2))
     both = float(sizes.mean())
-    yield f"flexural rigidity {both - 1:+.2%} off: all components scale alike", both * true
+    if both:
+        yield scaled_alike(both, "components"), both * true
     for factor, said in _UNITS.items():
         for i, name in enumerate(("forces", "moments")):
             if abs(sizes[i] / factor - 1) < _SAME_UNIT:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
-from analytic.from_clamp.noise import largest, reading_noise, scatter
+from analytic.from_clamp.noise import reading_noise, scatter
 from analytic.numerics.arrays import Booleans, Floats, Integers
 from analytic.space import SpatialReadings
 from compare.explain.causes import slopes
@@ -48,8 +48,8 @@ def to_find_out(reference: Readings, candidate: Readings) -> str:
     advice = {
         **(split if has_budget(reference, candidate) else {}),
         "measured": rig,
-        "": "of a simulator, refine one thing at a time (elements, time step, contact, obstacle) "
-        f"and see which makes them agree; of a rig, {rig}",
+        "": "of a simulator, refine one thing at a time (elements, time step, rest, contact, "
+        f"obstacle) and see which makes them agree; of a rig, {rig}",
     }
     does = next(to for who, to in advice.items() if candidate.source.startswith(who))
     return f"the readings alone do not show why; {_sinking(reference, candidate) or does}"
@@ -157,17 +157,17 @@ def _untouched(found: Measurement) -> str | None:
     idle, unknown = seen == "free", seen == ""
     if not (idle | unknown).all():
         return None
+    noise = reading_noise(found.candidate)
+    jumps = {n: noise[n] / found.disagreement[n].scale for n in CLAMP_READINGS[:2]}
+    worst = max(jumps, key=jumps.__getitem__)
+    if jumps[worst] > _HIDES:
+        return (
+            f"{worst} jumps from station to station by {jumps[worst]:.0%} of the reference's "
+            "largest, and hides any load: what the sensor is on swings, its readings are noise, or "
+            "its stations are not at rest"
+        )
     touching = (table["phase"] != "free").to_numpy() if "phase" in table else np.zeros_like(idle)
     if (idle & touching).any():
-        noise = reading_noise(found.candidate)
-        jumps = {n: noise[n] / largest(found.reference.values(n)) for n in CLAMP_READINGS[:2]}
-        worst = max(jumps, key=jumps.__getitem__)
-        if jumps[worst] > _HIDES:
-            return (
-                f"{worst} jumps from station to station by {jumps[worst]:.0%} of the reference's "
-                "largest, and hides any load: what the sensor is on swings, or its readings are "
-                "noise"
-            )
         return (
             f"the clamp reads no load, though the candidate records a contact at "
             f"{(idle & touching).sum()} stations: the sensor measures something else, or nothing"

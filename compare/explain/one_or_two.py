@@ -23,6 +23,7 @@ _SECANTS, _SETTLED = 5, 1e-3  # sweeps at most for that, and the last change of 
 _BETTER = 6.0  # the same as _DISTINCT, for three constants to be preferred to one cause
 _TWO_BETTER = 10.0  # and for two causes
 _SHORTLIST = 4  # pairs that are solved at their sizes
+_GROSS = 0.1  # of the largest magnitude in either sweep, rms: no cause leaves so much
 _UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
 _FEWEST = 10  # stations
 
@@ -33,6 +34,7 @@ class Weigh:
 
     all: float
     noise: float  # what jumps in it
+    most: float = np.inf  # that a cause may leave, jumps and all
 
     def beyond(self, one: Explanation) -> float:
         """What it leaves, its scatter apart."""
@@ -43,7 +45,8 @@ class Weigh:
         return float(np.sqrt(self.beyond(one) / self.all))
 
     def convinces(self, one: Explanation) -> bool:
-        return self.all - one.left >= CONVINCING * (self.all - self.noise)
+        enough = self.all - one.left >= CONVINCING * (self.all - self.noise)
+        return enough and one.left <= self.most
 
     def alike(self, best: Explanation, other: Explanation) -> bool:
         """Whether another one leaves hardly more than the best."""
@@ -73,7 +76,11 @@ def one_or_two(
     wirings = list(misread(true, seen, scale, found.reference.beam.length))
     if found.reference.running == "foot_x":
         wirings.append(about_the_origin(true, foot_x, scale))
-    weigh = Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
+    weigh = Weigh(
+        float(np.sum((seen - true) ** 2)),
+        float(np.sum(jumps**2) * known.sum()),
+        float(np.sum((_GROSS * np.maximum(np.abs(seen).max(axis=1), 1.0)) ** 2) * known.sum()),
+    )
     tried = _alone(faults, wirings, true, seen, weigh)
     shapes = _shapes(true, found.reference, physical)
     tried += _in_one_phase(table["phase"].to_numpy()[known], shapes, seen - true, weigh)
@@ -268,7 +275,8 @@ def _wired(
 def _clearly(tried: list[Explanation], weigh: Weigh) -> Explanation | None:
     """The two at once that leave least, if that is little and no others leave hardly more."""
     best, *others = sorted(tried, key=lambda each: each.left)
-    clear = weigh.rest(best) <= _REST and not any(weigh.alike(best, one) for one in others)
+    little = weigh.rest(best) <= _REST and best.left <= weigh.most
+    clear = little and not any(weigh.alike(best, one) for one in others)
     return best if best.text and clear else None
 
 

@@ -1,15 +1,18 @@
 """What is wrong at some stations alone: single ones, those at the end, those without contact."""
 
+from typing import TypeAlias
+
 import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS
 from analytic.numerics.arrays import Booleans, Floats
 from compare.explain.one_or_two import CONVINCING
-from compare.judge.allowance import NoiseAllowance
+from compare.judge.allowance import Allowance, NoiseAllowance
 from compare.judge.failures import at_most_next_to_snap_off
-from compare.judge.tolerances import Tolerances
+from compare.judge.tolerances import Limits, Tolerances
 from compare.measure.disagreement import at_rest, rms
+from compare.measure.in_space import SpatialMeasurement
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
 
@@ -18,10 +21,14 @@ _HOLDS = 0.5  # of the last force before its release: a contact that goes on has
 _SWINGS = 3  # stations at least that show it
 
 
-def lone(
-    found: Measurement, error: Floats, at: Floats, limits: Tolerances, noise: NoiseAllowance
-) -> str | None:
-    """Single stations that are far off, if all others agree or nearly all of it is theirs."""
+Found: TypeAlias = Measurement | SpatialMeasurement
+
+
+def lone(found: Found, error: Floats, at: Floats, limits: Limits, noise: Allowance) -> str | None:
+    """Single stations that are far off, if all others agree or nearly all of it is theirs.
+
+    `error` has a row a component, over its largest magnitude.
+    """
     size = np.abs(error).max(axis=0)
     off = size > _FAR_OFF * np.median(size)
     neighbours = np.append(off[1:], False) & off
@@ -57,20 +64,17 @@ def ended(found: Measurement, limits: Tolerances) -> str | None:
     return f"the contact ends {when}, at {place} instead of {due}, and agrees up to there"
 
 
-def agree_to(
-    error: Floats, limits: Tolerances, noise: NoiseAllowance, jumps: Floats | float = 0.0
-) -> bool:
+def agree_to(error: Floats, limits: Limits, noise: Allowance, jumps: Floats | float = 0.0) -> bool:
     """Whether the readings agree at some stations, beside what jumps from one to the next."""
     stations = error.shape[1]
-    allowed = [noise.rms(limits.of(name, "rms"), name, stations) for name in CLAMP_READINGS]
+    allowed = [noise.rms(limits.of(name, "rms"), name, stations) for name in noise.level]
     return bool((rms(error) <= np.hypot(allowed, jumps)).all())
 
 
-def without_contact(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
+def without_contact(found: Found, limits: Limits, noise: Allowance) -> str | None:
     """Stations where one sweep is free, if the readings there are off."""
-    rows = at_rest(found.candidate, found.alignment.idle, found.snap_off)
-    error, at = _error(found, rows), rows["at"].to_numpy()
-    allowed = [noise.max(limits.of(n, "max"), n, len(at)) for n in CLAMP_READINGS]
+    error, at, released = _idle(found)
+    allowed = [noise.max(limits.of(n, "max"), n, len(at)) for n in found.disagreement]
     off = np.asarray((np.abs(error) > np.array(allowed)[:, None]).any(axis=0))
     begins, between = begun(found, limits, at)
     off &= ~between
@@ -98,13 +102,24 @@ def _free(found: Measurement, off: Booleans, error: Floats, at: Floats) -> str:
     said = _off(found, off, error, at, "where a sweep is free")
     if off.sum() == 1:
         return f"single stations: {said}; all others agree"
-    way, end = direction(found.reference), found.snap_off.reference
-    released = end is not None and (way * at[off] > way * end).all()
     turns = (error[:, off].min(axis=1) < 0) & (error[:, off].max(axis=1) > 0)
     todo = "let it come to rest at each station, or say so in `status`"
-    if released and off.sum() >= _SWINGS and turns.any():
+    if released[off].all() and off.sum() >= _SWINGS and turns.any():
         return f"ringing: the released vibrissa swings, {said}; {todo}"
     return f"no rest: {said}, and all others agree; {todo}"
+
+
+def _idle(found: Found) -> tuple[Floats, Floats, Booleans]:
+    """What is off where one sweep is free, where that is, and whether it is after the release."""
+    if isinstance(found, SpatialMeasurement):
+        last = np.flatnonzero(found.touching.reference).max(initial=-1)
+        after = np.arange(len(found.travel)) > last
+        return found.error[:, found.idle], found.travel[found.idle], after[found.idle]
+    rows = at_rest(found.candidate, found.alignment.idle, found.snap_off)
+    way = direction(found.reference)
+    at, end = rows["at"].to_numpy(), found.snap_off.reference
+    late = np.zeros(len(at), dtype=bool) if end is None else way * at > way * end
+    return _error(found, rows), at, np.asarray(late)
 
 
 def next_to_snap_off(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
@@ -119,11 +134,11 @@ def next_to_snap_off(found: Measurement, limits: Tolerances, noise: NoiseAllowan
     return None
 
 
-def _off(found: Measurement, off: Booleans, error: Floats, at: Floats, where: str) -> str:
+def _off(found: Found, off: Booleans, error: Floats, at: Floats, where: str) -> str:
     """How many stations are off, by how much and in what the worst of them is."""
     size = np.abs(error).max(axis=0)
     worst = int(size.argmax())
-    reading = CLAMP_READINGS[int(np.abs(error[:, worst]).argmax())]
+    reading = [*found.disagreement][int(np.abs(error[:, worst]).argmax())]
     unit, name = found.reference.running_unit, found.reference.running
     return (
         f"{off.sum()} of {len(off)} {where} {'is' if off.sum() == 1 else 'are'} off by up to "

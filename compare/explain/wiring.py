@@ -16,6 +16,12 @@ _FURTHEST = 1.1  # L; a simulator may take moments about the straight vibrissa's
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
 _FOLLOWS = 0.5  # fraction of a small reading's variance that follows the load, if it is alive
 _ROTATION = np.radians(60)  # beyond, it is a swap of axes
+_LINKS, _NO_LINK = 500, 0.1  # a chain's at most; how far from whole their number is by its errors
+LARGER = -0.8, 2.2
+"""By what fraction readings are larger at least and at most by a gain or a rigidity that is off.
+
+A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
+"""
 
 
 @dataclass(frozen=True)
@@ -115,7 +121,7 @@ def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iter
 
 
 def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
-    """One reading, both forces, or all of them, larger by factors that units differ by."""
+    """One reading, both forces, or all of them, larger by what units differ by, or far larger."""
     for groups in ([[0]], [[1]], [[2]], [[0, 1]], [[0, 1, 2]], [[0, 1], [2]]):
         gains, said = np.ones(3), {}
         for rows in groups:
@@ -123,16 +129,49 @@ def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
             factor = float(np.sum(true[rows] * seen[rows]) / weight) if weight > 0 else 0.0
             known = unit_factors(of_moment=rows == [2])
             like = decimal_first(one for one in known if abs(factor / one - 1) <= _SAME_UNIT)
-            if not like:
+            every, names = len(rows) == len(CLAMP_READINGS), [CLAMP_READINGS[i] for i in rows]
+            called = "all readings" if every else " and ".join(names)
+            if like:
+                unit = min(like, key=lambda one: abs(factor - one))
+                due = f"{factor:.4g} times what is due ({known[unit]}?)"
+                said[unit] = f"{called} in another unit: {due}" + _of_links(factor) * every
+            elif len(groups) > 1 or not _far(factor, true[rows], seen[rows]):
                 continue
-            unit = min(like, key=lambda one: abs(factor - one))
+            elif every:
+                said[factor] = scaled_alike(factor, "readings")
+            else:
+                is_ = "is" if len(rows) == 1 else "are"
+                said[factor] = f"{called} {is_} {_times(factor)}: a gain, or a unit"
             gains[rows] = factor
-            names = " and ".join(CLAMP_READINGS[i] for i in rows)
-            names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
-            said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({known[unit]}?)"
         one_mistake = len(groups) > 1 and abs(gains[2] / gains[0] - 1) <= _SAME_UNIT
         if len(said) == len(groups) and not one_mistake:
             yield Misreading(", ".join(said.values()), np.diag(gains), 1)
+
+
+def _far(factor: float, true: Floats, seen: Floats) -> bool:
+    """Whether readings are so many times the true ones, and no gain or rigidity makes them so."""
+    follows = np.sum(true * seen) ** 2 > _FOLLOWS * np.sum(true**2) * np.sum(seen**2)
+    return bool(follows and not LARGER[0] <= abs(factor) - 1 <= LARGER[1])
+
+
+def scaled_alike(factor: float, what: str) -> str:
+    """What makes all of them so many times what they should be."""
+    if LARGER[0] <= factor - 1 <= LARGER[1]:
+        return f"flexural rigidity {factor - 1:+.2%} off: all {what} scale alike"
+    return f"all {what} are {_times(factor)}: EI, or its unit{_of_links(factor)}"
+
+
+def _of_links(factor: float) -> str:
+    if not 1 / _LINKS <= factor < 1:
+        return ""
+    links = round(1 / factor)
+    whole = abs(1 / factor - links) <= _NO_LINK
+    return f"; or, in a chain of {links} links, a spring of EI/L in place of EI/l" if whole else ""
+
+
+def _times(factor: float) -> str:
+    many = f"{factor:.5g} times" if abs(factor) > 1 else f"1/{1 / factor:.5g} of"
+    return f"{many} the reference's"
 
 
 def _dead(true: Floats, seen: Floats) -> Iterator[Misreading]:

@@ -46,7 +46,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
     yield from _offset(found)
     yield from _components(found, limits, noise, f"{found.reference.running} = {{:.5g}} {unit}")
     asked = limits.limits()
-    yield from _not_compared(found, limits, noise)
+    yield from _next_to_snap_off(found, limits, noise)
     for which, right in found.phase_agreement().items():
         judged = f"{right:.1%} judged rightly from the clamp"
         phases = asked["phase_agreement"]
@@ -151,33 +151,31 @@ def _components(
             if not math.isnan(peak.arc_length):
                 said += f", arc length {peak.arc_length / length:.4g} L"
             yield from _beyond(name, said, peak.size, limit, widened, level, weight=_READINGS)
+        if one.idle is not None:
+            why = "as at any one station: a clamp at rest reads its load alone"
+            limit = Limit(limits.of(name, "max"), why)
+            at = place.format(one.idle.at / size)
+            said = f"off by {one.idle.size:.2e} of its largest magnitude at {at}, where one is free"
+            widened = noise.max(limit, name, one.stations)
+            yield from _beyond(name, said, one.idle.size, limit, widened, level, weight=_READINGS)
 
 
-def _not_compared(
+def _next_to_snap_off(
     found: Measurement, limits: Tolerances, noise: NoiseAllowance
 ) -> Iterator[Failure]:
-    """Where no rms is taken: without contact, and in the window before the snap-off.
+    """In the window before the snap-off, where no rms is taken.
 
     There a station in motion, which is a mean over its way, takes in the snap-off.
     """
     if "motion" in found.candidate.provenance:
         return
-    size, unit = found.reference.running_unit
     for name, one in found.disagreement.items():
-        level, allowed = noise.level[name], limits.of(name, "max")
-        if one.idle is not None:
-            limit = Limit(allowed, "as at any one station: a clamp at rest reads its load alone")
-            place = f"{found.reference.running} = {one.idle.at / size:.5g} {unit}"
-            said = (
-                f"off by {one.idle.size:.2e} of its largest magnitude at {place}, where one is free"
-            )
-            widened = noise.max(limit, name, one.stations)
-            yield from _beyond(name, said, one.idle.size, limit, widened, level, weight=_READINGS)
         near = one.max_before_snap_off
         if not math.isnan(near * one.fold):
             limit = at_most_next_to_snap_off(found, name, limits)
             said = f"off by {near:.2e} of its largest magnitude next to the snap-off"
             widened = noise.max(limit, name, one.stations)
+            level = noise.level[name]
             yield from _beyond(name, said, near, limit, widened, level, weight=_READINGS)
 
 

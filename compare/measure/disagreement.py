@@ -131,13 +131,18 @@ def disagreements(
         )
         here = disagreement(error[~near], at[~near], phase, scale, arc_length)
         inside = float(np.abs(error[near]).max()) if near.any() else np.nan
-        peak = None
-        if len(idle):
-            worst = int(np.argmax(np.abs(free)))
-            peak = Peak(float(abs(free[worst])), float(idle["at"][worst]), np.nan)
         fold = _fold(reference, name, snap) / scale
+        peak = worst(free, idle["at"].to_numpy())
         found[name] = replace(here, max_before_snap_off=inside, fold=fold, idle=peak)
     return found
+
+
+def worst(error: Floats, at: Floats) -> Peak | None:
+    """The largest difference at stations that are in no phase; None if there are none."""
+    if not len(error):
+        return None
+    i = int(np.argmax(np.abs(error)))
+    return Peak(float(abs(error[i])), float(at[i]), np.nan)
 
 
 def at_rest(candidate: Readings, idle: pd.DataFrame, snap: Occurrence) -> pd.DataFrame:

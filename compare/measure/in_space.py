@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from analytic.numerics.arrays import Booleans, Floats, Words
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components
-from compare.measure.disagreement import SweepPair, disagreement, rms
-from compare.sense.touching import TouchingStations, paired_events, touching
+from compare.measure.disagreement import SweepPair, disagreement, rms, worst
+from compare.sense.occurrence import Occurrence
+from compare.sense.touching import ENDS, TouchingStations, paired_events, touching
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,8 @@ class SpatialMeasurement(SweepPair[SpatialReadings]):
     frame: Frame  # of the components
     travel: Floats  # shape (stations,); of the foot along its path [length]
     compared: Booleans  # shape (stations,); where both touch and are trusted
+    idle: Booleans  # shape (stations,); where one is free, but those between an event in both
+    error: Floats  # shape (6, stations); what components are off by, over `scale`
     contact: ContactDisagreement
     # Fraction of the compared stations that are in one phase; None where a source records none.
     phase_agreement: float | None
@@ -63,21 +66,27 @@ def measure_in_space(
     if phases[0] is not None and phases[1] is not None and compared.any():
         same = float((phases[0] == phases[1])[compared].mean())
     phase = np.full(len(compared), "") if phases[0] is None else phases[0].astype(str)
+    events = paired_events(reference, candidate, travel, on)
+    idle = reference.trusted & candidate.trusted & ~compared & ~_between(events, travel)
     exact, other, off = components(reference, frame), components(candidate, frame), {}
+    errors = []
     for names in (FORCE, MOMENT):
         sizes = [np.abs(exact[name][reference.touching]).max(initial=0.0) for name in names]
         scale = float(max(sizes)) or math.nan
         for name in names:
-            error = (other[name] - exact[name])[compared] / scale
-            off[name] = disagreement(error, travel[compared], phase[compared], scale)
+            errors.append(error := (other[name] - exact[name]) / scale)
+            here = disagreement(error[compared], travel[compared], phase[compared], scale)
+            off[name] = replace(here, idle=worst(error[idle], travel[idle]))
     return SpatialMeasurement(
         reference,
         candidate,
         off,
-        paired_events(reference, candidate, travel, on),
+        events,
         frame,
         travel,
         compared,
+        idle,
+        np.stack(errors),
         _contacts(reference, candidate, on.clear),
         same,
         {"reference": _counted(reference), "candidate": _counted(candidate)},
@@ -102,6 +111,20 @@ def _contacts(
     most = float(far.max()) if far.size else math.nan
     asked = int(compared.sum())
     return ContactDisagreement(float(rms(far)), most, far.size, asked, tuple(from_clamp), distance)
+
+
+def _between(events: Mapping[str, Occurrence], travel: Floats) -> Booleans:
+    """Stations between one event in two sweeps: it is what is off there.
+
+    But a touch, before which a vibrissa is all but unloaded, if it may be one and the same.
+    """
+    found = np.zeros(len(travel), dtype=bool)
+    for kind, one in events.items():
+        apart = one.difference is not None and not one.agrees(0.0)
+        if apart or kind.startswith(ENDS):
+            ends = [math.inf if at is None else at for at in (one.reference, one.candidate)]
+            found |= (travel >= min(ends)) & (travel <= max(ends))
+    return found
 
 
 def _phases(readings: SpatialReadings) -> Words | None:

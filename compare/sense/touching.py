@@ -15,7 +15,9 @@ from compare.sense.noise import checked_level
 from compare.sense.occurrence import Occurrence
 
 _CLEAR = 2.0  # times the least force that is felt: noise hides no such force
-_TOUCH, _LEAVING, _ENDS = "touch", "leaving", ("slip-off", "release")
+_TOUCH, _LEAVING = "touch", "leaving"
+ENDS = "slip-off", "release", _LEAVING
+"""The ways a contact ends, the last one where a record does not say how."""
 _Events = list[tuple[str, float, float]]  # kind, travel, by how much that is uncertain
 
 
@@ -101,7 +103,7 @@ def paired_events(
             for one, other, on in zip(both, both[::-1], touching[:2], strict=True)
         ]
     found = {}
-    for kind in (_TOUCH, *_ENDS, _LEAVING):
+    for kind in (_TOUCH, *ENDS):
         pairs = zip_longest(*([event for event in side if event[0] == kind] for side in sides))
         for number, (one, other) in enumerate(pairs, start=1):
             found[kind if number == 1 else f"{kind} {number}"] = Occurrence(
@@ -116,7 +118,7 @@ def _recorded(readings: SpatialReadings) -> _Events:
     return [
         (str(event["kind"]), float(event["travel"]), 0.0)
         for event in readings.provenance["events"]
-        if event["kind"] in (_TOUCH, *_ENDS)
+        if event["kind"] in (_TOUCH, *ENDS)
     ]
 
 

@@ -192,9 +192,18 @@ def about_the_tip(sweep: Readings, rng: np.random.Generator) -> Readings:
     return columns(sweep, moment_z=sweep.values("moment_z") - sweep.values("force_x"))
 
 
-def all_units(sweep: Readings, rng: np.random.Generator) -> Readings:
-    factor = rng.choice([1000.0, 9.80665, 1 / 9.80665])
-    return each(lambda values, rng: factor * values)(sweep, rng)
+def times(factor: Callable[[np.random.Generator], float]) -> Sensor:
+    """All readings larger by one factor."""
+
+    def larger(sweep: Readings, rng: np.random.Generator) -> Readings:
+        by = factor(rng)
+        return each(lambda values, rng: by * values)(sweep, rng)
+
+    return larger
+
+
+def far(rng: np.random.Generator) -> float:
+    return 10.0 ** (rng.uniform(0.8, 4) * rng.choice([-1, 1]))
 
 
 def crosstalk(sweep: Readings, rng: np.random.Generator) -> Readings:

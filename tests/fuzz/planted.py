@@ -9,7 +9,6 @@ from tests.fuzz.acts import (
     Sensor,
     Swept,
     about_the_tip,
-    all_units,
     another,
     beam_off,
     block_again,
@@ -23,6 +22,7 @@ from tests.fuzz.acts import (
     either,
     ended,
     exchanged,
+    far,
     gain,
     held,
     held_on,
@@ -44,6 +44,7 @@ from tests.fuzz.acts import (
     spiked,
     standing,
     stepped,
+    times,
     turned,
     with_own_error,
     zero,
@@ -117,7 +118,17 @@ MISTAKES: dict[str, Mistake] = {
         "in another unit",
         sensed=one(lambda v, rng: v * rng.choice([1000.0, 0.001, 9.80665, 1 / 9.80665])),
     ),
-    "unit of all": Mistake("all readings in another unit", sensed=all_units),
+    "unit of all": Mistake(
+        "all readings in another unit",
+        sensed=times(lambda rng: rng.choice([1000.0, 9.80665, 1 / 9.80665])),
+    ),
+    "length of a cell forgotten": Mistake(
+        "all readings are 1/ & links", sensed=times(lambda rng: 1 / rng.integers(11, 90))
+    ),
+    "all far off": Mistake("all readings are & the reference's: EI", sensed=times(far)),
+    "one far off": Mistake(
+        " is & the reference's: a gain", sensed=one(lambda v, rng: v * far(rng))
+    ),
     "dead channel": Mistake("dead channel", sensed=one(lambda v, rng: 0 * v)),
     "opposite direction": Mistake(
         "opposite direction of travel",

@@ -338,3 +338,34 @@ def test_a_fitted_offset_may_hide_what_else_is_off():
     seen = with_noise(lower, dict.fromkeys(CLAMP_READINGS, 0.01), 3)
     said = compare(solve_sweep(case), seen, offset="auto", noise="auto").likely
     assert said is None or "height of the object" in said
+
+
+@pytest.mark.parametrize("factor", [1e-4, 1 / 40, 1 / 20, 0.21, 3.1, 3.3, 40, 1e4])
+def test_one_factor_is_named_as_such_however_large(factor):
+    """A spring of EI/L, not EI/l, was a soft clamp and a cone; a moment of 1/40 a gain of 0.2."""
+    exact, many = exact_sweep("catenary"), f"{factor:.5g} times"
+    many = f"{many if factor > 1 else f'1/{1 / factor:.5g} of'} the reference's: "
+    near = 0.2 < factor < 3.2
+    for names, said in (
+        (
+            CLAMP_READINGS,
+            "flexural rigidity" if near else f"all readings are {many}EI, or its unit",
+        ),
+        *(([n], f"gain of {n}" if near else f"{n} is {many}a gain") for n in CLAMP_READINGS),
+    ):
+        mine = sensed(changed(exact, **{n: factor * exact.values(n) for n in names}))
+        cause = compare(exact, mine).likely
+        assert cause.startswith(said)
+        assert ("in a chain of 40 links" in cause) == (factor == 1 / 40 and len(names) == 3)
+
+
+def test_stations_far_from_rest_have_no_cause_of_physics():
+    """Between once and three times what is due: "flexural rigidity +97 %"."""
+    exact = exact_sweep("catenary")
+    for seed in range(3):
+        size = 1 + 2 * np.random.default_rng(seed).uniform(size=len(exact.table))
+        jumping = {n: size * exact.values(n) for n in CLAMP_READINGS}
+        assert compare(exact, sensed(changed(exact, **jumping))).likely is None
+    wild = np.random.default_rng(1).uniform(-1, 1, len(exact.table)) * (exact.values("force_y") > 0)
+    nowhere = compare(exact, sensed(changed(exact, force_x=3 * wild, force_y=3 * wild)))
+    assert nowhere.likely.endswith("or its stations are not at rest")
