@@ -4,6 +4,11 @@ A bead is a material point: hung up on one, the beam leans on the contour at an 
 contour's curvature times half of the beads' spacing, and the force is turned by that. Where this is
 too much, the beads of the link that touches slide until one of them is where the link is tangential
 to the contour, whatever the configuration: the contact is then that of the link's whole side.
+
+One bead that slides on all contours, as in space, was measured in place of the rows of them. It is
+as near (catenary, 40 links: 1.04e-3 rms, beads 1.05e-3) and nearer past what is sharp and smooth
+(a needle, 80 links: 6e-5, beads 1.7e-3), at 5.0 ms a station, beads 1.2. It was not taken, as two
+contacts, cones, weight, clamps that lean and the engines' twins would need the rows all the same.
 """
 
 import mujoco
