@@ -20,7 +20,6 @@ _FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the s
 _HOLDS = 0.5  # of the last force before its release: a contact that goes on has no less
 _SWINGS = 3  # stations at least that show it
 
-
 Found: TypeAlias = Measurement | SpatialMeasurement
 
 
@@ -76,9 +75,11 @@ def without_contact(found: Found, limits: Limits, noise: Allowance) -> str | Non
     error, at, released = _idle(found)
     allowed = [noise.max(limits.of(n, "max"), n, len(at)) for n in found.disagreement]
     off = np.asarray((np.abs(error) > np.array(allowed)[:, None]).any(axis=0))
-    begins, between = begun(found, limits, at)
-    off &= ~between
-    beside = None if not off.any() else _free(found, off, error, at)
+    begins = None
+    if isinstance(found, Measurement) and isinstance(limits, Tolerances):
+        begins, between = begun(found, limits, at)
+        off &= ~between
+    beside = _free(found, off, error, at, bool(released[off].all())) if off.any() else None
     return "; beside that ".join(filter(None, (begins, beside))) or None
 
 
@@ -97,14 +98,14 @@ def begun(found: Measurement, limits: Tolerances, at: Floats) -> tuple[str | Non
     return f"the contact begins late, {places}, and agrees from there on", between
 
 
-def _free(found: Measurement, off: Booleans, error: Floats, at: Floats) -> str:
+def _free(found: Found, off: Booleans, error: Floats, at: Floats, released: bool) -> str:
     """What is off where one sweep is free."""
     said = _off(found, off, error, at, "where a sweep is free")
     if off.sum() == 1:
         return f"single stations: {said}; all others agree"
     turns = (error[:, off].min(axis=1) < 0) & (error[:, off].max(axis=1) > 0)
     todo = "let it come to rest at each station, or say so in `status`"
-    if released[off].all() and off.sum() >= _SWINGS and turns.any():
+    if released and off.sum() >= _SWINGS and turns.any():
         return f"ringing: the released vibrissa swings, {said}; {todo}"
     return f"no rest: {said}, and all others agree; {todo}"
 
