@@ -42,10 +42,11 @@ class Edit:
 
 @dataclass(frozen=True)
 class Insert:
-    """An element that is put into a body, or at the end of the model."""
+    """An element that is put into a body or around it, or at the end of the model."""
 
     text: str
     body: int | None = None  # its number in the compiled model
+    around: bool = False  # a body that is to hold that one, without its end tag
 
     def with_free_names(self, model: mujoco.MjModel) -> "Insert":
         """With names that nothing in the model has, as another vibrissa's sensor may."""
@@ -53,7 +54,7 @@ class Insert:
         return replace(self, text=text)
 
     def __str__(self) -> str:
-        return self.text
+        return f"{self.text} ... </body>" if self.around else self.text
 
 
 def _free(name: str, model: mujoco.MjModel) -> str:

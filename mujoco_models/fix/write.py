@@ -132,12 +132,14 @@ class Texts:
                 self._new[kind][name] = value
 
     def insert(self, new: Insert) -> None:
-        """At the beginning of a body, or at the end of the file."""
+        """At the beginning of a body, around it, or at the end of the file."""
         if new.body is None:
             root = self._places.root
             self._change(self._main, root.end, root.end, f"  {new.text}\n")
             return
         element = self._places.element("body", new.body)
+        if element is None and new.around:
+            element = self._places.many("geom", int(self._places.model.body_geomadr[new.body]))
         if element is None or element.model:
             name = self._places.model.body(new.body).name or new.body
             raise InputError(
@@ -145,6 +147,11 @@ class Texts:
                 f"put {new.text} into a body there, and what another element or file makes into "
                 "that",
             )  # fmt: skip
+        if new.around:
+            end = self._text(element.file).index(b">", element.end) + 1
+            self._change(element.file, element.start, element.start, new.text)
+            self._change(element.file, end, end, "</body>")
+            return
         self._put_into(element, new.text)
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)
