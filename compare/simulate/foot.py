@@ -71,7 +71,8 @@ def _hand(found: MeasuredBeam) -> Iterator[Remark]:
         spring = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > _TURNS else ""
         yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
                      f": it {spring}moves by {gives:.1e} L under {FORCE:g} EI/L^2",
-                     edits=treatment.held(found))  # fmt: skip
+                     "" if hand.welds else "springs hold it, and it no longer moves",
+                     treatment.held(found))  # fmt: skip
 
 
 def _astray(found: MeasuredBeam) -> Iterator[Remark]:

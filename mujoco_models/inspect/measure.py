@@ -335,8 +335,9 @@ def _stable_step(
     kinds, none = mujoco.mjtIntegrator, np.zeros_like(inertia)
     runge_kutta = model.opt.integrator == kinds.mjINT_RK4
     implicit = damping
-    if model.opt.integrator == kinds.mjINT_EULER:  # its motors' are explicit
+    if model.opt.integrator == kinds.mjINT_EULER:  # its motors' and a flex's are explicit
         off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+        off |= len(damping) < model.nv
         implicit = none if off else np.minimum(damping, np.diag(model.dof_damping))
     of_place, of_speed = (
         (-stiffness, -damping) if runge_kutta else (stiffness / 4, damping / 2 - implicit)
