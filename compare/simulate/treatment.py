@@ -203,8 +203,11 @@ def on_light_body(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     sensors = [s for s in (found.force, found.torque) if s is not None]
     if found.springs == "flex" or not found.body:
         return ()
-    site = f'<body name="clamp-body">{_site(found, "clamp-site")}'
-    return Insert(site, found.leads, around=True), _reading("clamp-site", *sensors)
+    return _on_body(found, _site(found, "clamp-site")), _reading("clamp-site", *sensors)
+
+
+def _on_body(found: MeasuredBeam, site: Insert) -> Insert:
+    return Insert(site.text, found.leads, "clamp-body")
 
 
 def _reading(site: str, *sensors: Sensed) -> Edit:
@@ -217,7 +220,7 @@ def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
     site = _site(found, f"clamp-{words[0]}")
     if found.body_mass > found.mass and found.springs != "flex":  # they would feel it
-        site = Insert(f'<body name="clamp-body">{site}', found.leads, around=True)
+        site = _on_body(found, site)
     return site, Insert(f"<sensor>{names}</sensor>")
 
 

@@ -46,15 +46,16 @@ class Insert:
 
     text: str
     body: int | None = None  # its number in the compiled model
-    around: bool = False  # a body that is to hold that one, without its end tag
+    around: str = ""  # the name of a body that is to hold both, if the file lets it
 
     def with_free_names(self, model: mujoco.MjModel) -> "Insert":
         """With names that nothing in the model has, as another vibrissa's sensor may."""
         text = _NAMED.sub(lambda x: f'{x[1]}="{_free(x[2], model)}"', self.text)
-        return replace(self, text=text)
+        return replace(self, text=text, around=self.around and _free(self.around, model))
 
     def __str__(self) -> str:
-        return f"{self.text} ... </body>" if self.around else self.text
+        around = f'<body name="{self.around}">{self.text} ... </body>'
+        return around if self.around else self.text
 
 
 def _free(name: str, model: mujoco.MjModel) -> str:

@@ -137,9 +137,10 @@ class Texts:
             root = self._places.root
             self._change(self._main, root.end, root.end, f"  {new.text}\n")
             return
+        if new.around:
+            self._put_around(new, new.body)
+            return
         element = self._places.element("body", new.body)
-        if element is None and new.around:
-            element = self._places.many("geom", int(self._places.model.body_geomadr[new.body]))
         if element is None or element.model:
             name = self._places.model.body(new.body).name or new.body
             raise InputError(
@@ -147,15 +148,28 @@ class Texts:
                 f"put {new.text} into a body there, and what another element or file makes into "
                 "that",
             )  # fmt: skip
-        if new.around:
-            end = self._text(element.file).index(b">", element.end) + 1
-            self._change(element.file, element.start, element.start, new.text)
-            self._change(element.file, end, end, "</body>")
-            return
         self._put_into(element, new.text)
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)
             self._free_keys(int(self._places.model.body_mocapid[new.body]))
+
+    def _put_around(self, new: Insert, body: int) -> None:
+        """Only beside it where it does not stand in its parent itself, but in a frame, say."""
+        places, parent = self._places, int(self._places.model.body_parentid[body])
+        inner, outer = places.element("body", body), places.element("body", parent)
+        if inner is None:
+            inner = places.many("geom", int(places.model.body_geomadr[body]))
+        if (
+            inner is None
+            or inner.model
+            or outer is None
+            or all(inner is not e for e in outer.children)
+        ):
+            self.insert(Insert(new.text, parent))
+            return
+        end = self._text(inner.file).index(b">", inner.end) + 1
+        self._change(inner.file, inner.start, inner.start, f'<body name="{new.around}">{new.text}')
+        self._change(inner.file, end, end, "</body>")
 
     def _widen_keys(self, body: int) -> None:
         """Give keyframes a place and a speed of a joint that comes first in a body."""

@@ -294,6 +294,17 @@ def test_a_heavy_arm_that_swings_is_kept_from_the_sensors(tmp_path):
     assert abs(off[1:50]).max() < 0.02 * abs(exact).max()  # until it lets go
 
 
+def test_what_a_frame_holds_gets_no_body_around_it(tmp_path):
+    """It would be where the frame is, and not the foot; the fault is left, and said."""
+    driven = '<actuator><position joint="rail" kp="5e3"/></actuator></mujoco>'
+    heavy = (WEIGHT, WEIGHT.replace('mass="1e-3"', 'mass="50"')), (' armature="1e5"', "")
+    first, end = '<body name="whisker1"', "</body></worldbody>"
+    frame = (first, f'<frame pos="0 0 0">{first}'), (end, f"</frame>{end}")
+    before, after = fixed(on_rail(tmp_path, *heavy, (MOTOR, driven), *frame))
+    assert faults_in(before) == faults_in(after.inspection) == {"foot"}
+    assert len(after.edits) == 2
+
+
 def test_each_joint_of_an_arm_gives_way_by_its_own_arm(tmp_path):
     """Joints of an arm that gives way little enough were paired with each other's lever."""
     shoulder = f'{RAIL}{WEIGHT}<joint name="far" pos="-2 0 0" axis="0 0 1" stiffness="1e4"/>'
