@@ -76,7 +76,7 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
             for edit in wanted
             if isinstance(edit, Edit) or edit not in done
         ]
-        if not new and files:
+        if files and not {*new}.difference(done):
             break
         done += new
         asked = asked or len(done)

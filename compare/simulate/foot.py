@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterator
 
+from compare.simulate import treatment
 from compare.simulate.expected import SPEED
 from compare.simulate.remark import FORCE, RIGIDITY, SINKS, Remark
 from compare.simulate.rigidity import as_intended, hand_softens
-from compare.simulate.treatment import held, on_rail
-from mujoco_models.fix.edit import Edit
+from mujoco_models.fix.edit import Edit, number
 from mujoco_models.inspect.ahead import WAY
 from mujoco_models.inspect.measured import MeasuredBeam
 
@@ -19,15 +19,8 @@ _BEHIND = 0.02  # of the way, or of the speed; a sweep ends so much short
 _LEAPS = 0.01  # of the way; by so much a servo leaps as contact ends: by 0.02 it was 0.04 L late
 _SLOWED = 0.45  # of its speed; a sweep ends where it is half of its way behind
 _LAGS = 0.1  # L; what is farther behind while it gains speed, no sweep waits for
-_FELT = 0.03  # of a sweep's force; what a swinging foot may add to it
-_SWINGS, _STIFF = (
-    0.5,
-    0.2,
-)  # T1; the period of a foot on its servo, that shakes it and that does not
-# L; how late a sensor feels by the mass on it, and of a sweep's force what that takes to gain speed
-# where it first touches: one of 54 stations, so that it makes one per cent. Of two carriages of
-# 0.36 T1 force_x was 2 per cent off, of 0.07 and 0.03 T1 0.2.
-_LATE, _STARTS, _PROMPT = 5e-3, 0.07, 1e-3
+_LATE = 5e-3  # L; of a carriage of 0.33 T1 force_x was 1.3 per cent off, of 0.1 T1 0.4
+_PROMPT = 0.2  # T1; of a drive that leaves a heavy foot no time to swing
 _TURNS = 1e-4  # relative, in EI; what turns by less is rounding
 _PULLS = 100.0  # of a sweep's force; a sensor on a foot that nothing drives feels 1e-4 of it
 
@@ -42,14 +35,14 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
     astray = tuple(_astray(found))
     yield from astray
     yield from _reach(found)
-    yield from _swing(found)
+    yield from _carries(found)
     if found.drive is None and found.objects:
         shown = ", ".join(map(repr, found.objects[:4]))
         yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
     elif found.drive is None and not astray:
         yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "give it a slide joint "
                      "across the vibrissa",
-                     on_rail(found) if found.hand is None else ())  # fmt: skip
+                     treatment.on_rail(found) if found.hand is None else ())  # fmt: skip
     elif found.drive is not None and "which is a force" in found.drive:
         yield Remark("fault", "foot", f"{found.drive}: nothing holds its speed",
                      "take a position or velocity actuator")  # fmt: skip
@@ -63,7 +56,7 @@ def on_foot(found: MeasuredBeam) -> Iterator[Remark]:
         yield Remark("fault", "foot", f"a mocap body has no speed in MuJoCo, so that {said}",
                      "give it a slide joint with a velocity actuator",
                      () if found.hand else (Edit("body", (("mocap", ""),), (found.body,)),
-                                            *on_rail(found)))  # fmt: skip
+                                            *treatment.on_rail(found)))  # fmt: skip
 
 
 def _hand(found: MeasuredBeam) -> Iterator[Remark]:
@@ -78,7 +71,8 @@ def _hand(found: MeasuredBeam) -> Iterator[Remark]:
         spring = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > _TURNS else ""
         yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
                      f": it {spring}moves by {gives:.1e} L under {FORCE:g} EI/L^2",
-                     edits=held(found))  # fmt: skip
+                     "" if hand.welds else "springs hold it, and it no longer moves",
+                     treatment.held(found))  # fmt: skip
 
 
 def _astray(found: MeasuredBeam) -> Iterator[Remark]:
@@ -159,25 +153,25 @@ def _dragged(found: MeasuredBeam, against: float) -> Iterator[Remark]:
                      (free,) if drag > force else ())  # fmt: skip
 
 
-def _swing(found: MeasuredBeam) -> Iterator[Remark]:
-    """A heavy foot on a soft servo: its inertia is in the readings of a sensor on it."""
-    reach, mass, period = found.reach, found.body_mass, found.period
-    if reach is None or not (reach.gain and mass):
-        return
-    speed = SPEED * found.length / period
-    most = _FELT * FORCE * as_intended(found) / found.length**2
-    if reach.by_place:
-        turns = math.sqrt(reach.gain / reach.inertia)  # rad, by time
-        swings = 2 * math.pi / turns
-        soft = swings > _SWINGS * period and mass * turns * speed > most
-        enough = f"kp={reach.inertia * (2 * math.pi / (_STIFF * period)) ** 2:.2g}"
-        how = f"with a period of {swings / period:.2g} T1: a force sensor on it feels it swing"
-    else:
-        late = reach.inertia / (reach.gain + reach.damping) / period
-        starts = mass * speed / period * math.exp(-1 / max(late, _PROMPT))
-        soft = SPEED * late * mass / reach.inertia > _LATE or starts > _STARTS / _FELT * most
-        enough = f"kv={reach.inertia / (_LATE / SPEED * period):.2g}"
-        how = f"{late:.2g} T1 late: a force sensor on it feels it gain and lose speed"
-    if soft:
-        yield Remark("fault", "foot", f"its actuator holds a mass of {mass:.3g} softly, {how}",
-                     f"put the sensor on a light body of its own, or take {enough}")  # fmt: skip
+def _carries(found: MeasuredBeam) -> Iterator[Remark]:
+    """A foot that swings or is late: the inertia of what its sensors carry is in the readings."""
+    reach, length, rigidity = found.reach, found.length, as_intended(found)
+    force, moment = found.unloaded
+    felt = max(force * length**2, moment * length) / (FORCE * rigidity)
+    carried = max((s.carries for s in (found.force, found.torque) if s is not None), default=0.0)
+    remedy, late = "put the sensors on a light body of its own, between foot and vibrissa", 0.0
+    if reach is not None and reach.gain:
+        turns = 2 * math.pi / (_PROMPT * found.period)
+        stiff = f"kp={number(reach.inertia * turns**2)} and " if reach.by_place else ""
+        if found.hand is None:
+            remedy += f", or take {stiff}kv={number(2 * reach.inertia * turns)}"
+        if not reach.by_place:
+            late = carried / (reach.gain + reach.damping) / found.period
+    if felt > RIGIDITY:
+        yield Remark("fault", "foot", f"it does not keep its speed, and its sensors carry a mass of"
+                     f" {carried:.3g}: they read {felt:.1%} of a sweep's largest with nothing that "
+                     "touches", remedy, treatment.on_light_body(found))  # fmt: skip
+    elif SPEED * late > _LATE:
+        yield Remark("fault", "foot", f"its actuator holds a mass of {carried:.3g} softly: sensors "
+                     f"on it feel contacts {late:.2g} T1 late", remedy,
+                     treatment.on_light_body(found))  # fmt: skip

@@ -76,12 +76,13 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
 def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
     rigidity = smooth_rigidity(found)
     own = np.array([joint.flexural_rigidity for joint in found.joints])
-    off = by_its_clamp(found) / at_its_tip(found) - 1
+    off, later = by_its_clamp(found) / at_its_tip(found) - 1, treatment.half_cell(found)
     if abs(off) > RIGIDITY:
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
                      f"{'lower' if off < 0 else 'higher'} than its joints say: "
                      f"{_cause(found, own[0] / rigidity[0])}",
-                     "begin half a cell later" if treatment.half_cell(found) else "",
+                     f"begin half a cell later: its length is {found.length - later:.4g} then"
+                     if later else "",
                      treatment.beginning_later(found) or treatment.first_softened(found)
                      )  # fmt: skip
     coarse = by_its_links(found) / at_its_tip(found) - 1

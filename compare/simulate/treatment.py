@@ -152,8 +152,7 @@ def beginning_later(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     own = sensors[-1]
     at = _place(own.clamp + half_cell(found) * own.along, found.length)
     site = f'<site name="half-cell" pos="{at}" quat="{_text(own.quaternion)}"/>'
-    numbers = tuple(sensor.number for sensor in sensors)
-    return Insert(site, own.body), Edit("sensor", (("site", "half-cell"),), numbers)
+    return Insert(site, own.body), _reading("half-cell", *sensors)
 
 
 def first_softened(found: MeasuredBeam) -> tuple[Edit, ...]:
@@ -196,15 +195,33 @@ def before_joints(found: MeasuredBeam, sensor: Sensed) -> tuple[Edit | Insert, .
     """A sensor's site on what holds the first joint."""
     if not found.body:
         return ()
-    own = Edit("sensor", (("site", "clamp-site"),), (sensor.number,))
-    return _site(found, "clamp-site"), own
+    return _site(found, "clamp-site"), _reading("clamp-site", sensor)
+
+
+def on_light_body(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
+    """The sensors' site on a body without a mass, between foot and vibrissa."""
+    sensors = [s for s in (found.force, found.torque) if s is not None]
+    if found.springs == "flex" or not found.body:
+        return ()
+    return _on_body(found, _site(found, "clamp-site")), _reading("clamp-site", *sensors)
+
+
+def _on_body(found: MeasuredBeam, site: Insert) -> Insert:
+    return Insert(site.text, found.leads, "clamp-body")
+
+
+def _reading(site: str, *sensors: Sensed) -> Edit:
+    return Edit("sensor", (("site", site),), tuple(sensor.number for sensor in sensors))
 
 
 def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     if not found.body:
         return ()
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
-    return (_site(found, f"clamp-{words[0]}"), Insert(f"<sensor>{names}</sensor>"))
+    site = _site(found, f"clamp-{words[0]}")
+    if found.body_mass > found.mass and found.springs != "flex":  # they would feel it
+        site = _on_body(found, site)
+    return site, Insert(f"<sensor>{names}</sensor>")
 
 
 def _site(found: MeasuredBeam, name: str) -> Insert:

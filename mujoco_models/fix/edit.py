@@ -42,18 +42,20 @@ class Edit:
 
 @dataclass(frozen=True)
 class Insert:
-    """An element that is put into a body, or at the end of the model."""
+    """An element that is put into a body or around it, or at the end of the model."""
 
     text: str
     body: int | None = None  # its number in the compiled model
+    around: str = ""  # the name of a body that is to hold both, if the file lets it
 
     def with_free_names(self, model: mujoco.MjModel) -> "Insert":
         """With names that nothing in the model has, as another vibrissa's sensor may."""
         text = _NAMED.sub(lambda x: f'{x[1]}="{_free(x[2], model)}"', self.text)
-        return replace(self, text=text)
+        return replace(self, text=text, around=self.around and _free(self.around, model))
 
     def __str__(self) -> str:
-        return self.text
+        around = f'<body name="{self.around}">{self.text} ... </body>'
+        return around if self.around else self.text
 
 
 def _free(name: str, model: mujoco.MjModel) -> str:

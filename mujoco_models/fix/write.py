@@ -132,10 +132,13 @@ class Texts:
                 self._new[kind][name] = value
 
     def insert(self, new: Insert) -> None:
-        """At the beginning of a body, or at the end of the file."""
+        """At the beginning of a body, around it, or at the end of the file."""
         if new.body is None:
             root = self._places.root
             self._change(self._main, root.end, root.end, f"  {new.text}\n")
+            return
+        if new.around:
+            self._put_around(new, new.body)
             return
         element = self._places.element("body", new.body)
         if element is None or element.model:
@@ -149,6 +152,24 @@ class Texts:
         if new.text.startswith("<joint"):
             self._widen_keys(new.body)
             self._free_keys(int(self._places.model.body_mocapid[new.body]))
+
+    def _put_around(self, new: Insert, body: int) -> None:
+        """Only beside it where it does not stand in its parent itself, but in a frame, say."""
+        places, parent = self._places, int(self._places.model.body_parentid[body])
+        inner, outer = places.element("body", body), places.element("body", parent)
+        if inner is None:
+            inner = places.many("geom", int(places.model.body_geomadr[body]))
+        if (
+            inner is None
+            or inner.model
+            or outer is None
+            or all(inner is not e for e in outer.children)
+        ):
+            self.insert(Insert(new.text, parent))
+            return
+        end = self._text(inner.file).index(b">", inner.end) + 1
+        self._change(inner.file, inner.start, inner.start, f'<body name="{new.around}">{new.text}')
+        self._change(inner.file, end, end, "</body>")
 
     def _widen_keys(self, body: int) -> None:
         """Give keyframes a place and a speed of a joint that comes first in a body."""

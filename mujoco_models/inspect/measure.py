@@ -42,6 +42,7 @@ from mujoco_models.inspect.touching import (
     thickness,
     touching,
 )
+from mujoco_models.inspect.unloaded import unloaded
 from mujoco_models.inspect.unsolved import unsolved
 from mujoco_models.motion import IntegratorKind
 from mujoco_models.quiet import unlogged
@@ -122,6 +123,7 @@ def measure(
         foot=name_of(model.body(parts.foot), "body"),
         body=parts.foot,
         body_mass=float(model.body_mass[parts.foot]),
+        leads=_on(model, parts),
         frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes]) @ held.axes_of(parts.foot),
         springs=_springs(parts),
         drive=drive,
@@ -142,7 +144,10 @@ def measure(
         period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, *whole),
-        unsolved=unsolved(spec_of(path, site), parts, (nodes, axes), thick, tip_rigidity, period),
+        unsolved=unsolved(
+            spec_of(path, site), parts, held.data.qpos, (nodes, axes), thick, tip_rigidity, period
+        ),
+        unloaded=unloaded(model, parts, held.data.qpos, axes, length, period, (force, torque)),
         damping_ratio=float(damping[bending.first] / (2 * slowest)),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
@@ -172,6 +177,14 @@ def measure(
             for name, field in zip(("limits", "stiffening"), BEYOND, strict=True)
         },
     )
+
+
+def _on(model: mujoco.MjModel, parts: Parts) -> int:
+    """The body on the foot that is the first link, or holds that."""
+    body = parts.chain[0]
+    while model.body_parentid[body] != parts.foot:
+        body = int(model.body_parentid[body])
+    return body
 
 
 def _torsion(held: Held, along: Floats, rigidity: float, length: float) -> float:
@@ -322,8 +335,9 @@ def _stable_step(
     kinds, none = mujoco.mjtIntegrator, np.zeros_like(inertia)
     runge_kutta = model.opt.integrator == kinds.mjINT_RK4
     implicit = damping
-    if model.opt.integrator == kinds.mjINT_EULER:  # its motors' are explicit
+    if model.opt.integrator == kinds.mjINT_EULER:  # its motors' and a flex's are explicit
         off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+        off |= len(damping) < model.nv
         implicit = none if off else np.minimum(damping, np.diag(model.dof_damping))
     of_place, of_speed = (
         (-stiffness, -damping) if runge_kutta else (stiffness / 4, damping / 2 - implicit)

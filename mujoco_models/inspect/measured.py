@@ -41,6 +41,7 @@ class Sensed:
     cutoff: float  # the largest reading that it gives; infinite if it has no such limit
     free: bool  # whether it is on a free body: MuJoCo leaves what a weld does to that out
     bends: bool  # whether it is on a link, and turns with it as the vibrissa bends
+    carries: float  # the mass on it, without the vibrissa
     late: float = 0.0  # by its own delay, and the time from one reading to the next
 
 
@@ -109,6 +110,8 @@ class MeasuredBeam(Shown):
         Number of that body; 0 is the world.
     body_mass : float
         Of that body alone.
+    leads : int
+        Number of the body on it that is the first link, or holds that.
     frame : array, shape (4, 3)
         Where the vibrissa begins on that body, and the axes of the sweep, in rows.
     springs : str
@@ -150,6 +153,9 @@ class MeasuredBeam(Shown):
     unsolved : float
         By how much the sensors read otherwise, past an object, with MuJoCo's solver as it is than
         with one that goes on to the end, relative to the largest.
+    unloaded : tuple of float
+        By how much drive and hand make the rms of force and moment in the plane larger, past
+        nothing.
     damping_ratio : float
         Of the first vibration.
     medium : tuple of float
@@ -192,6 +198,7 @@ class MeasuredBeam(Shown):
     foot: str
     body: int
     body_mass: float
+    leads: int
     frame: Floats
     springs: Literal["joints", "plugin", "flex"]
     drive: str | None
@@ -213,6 +220,7 @@ class MeasuredBeam(Shown):
     period_without_armature: float
     stable_step: float
     unsolved: float
+    unloaded: tuple[float, float]
     damping_ratio: float
     medium: tuple[float, float, float]
     gravity: tuple[float, float, float]

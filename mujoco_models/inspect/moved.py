@@ -9,10 +9,12 @@ import numpy as np
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import holders, joints_of, mover_of
+from mujoco_models.quiet import has_diverged
 
 Drive: TypeAlias = Callable[[mujoco.MjData, float, float], None]
 """Moves the foot: how far it is to be at the end of a step, and how fast."""
 
+SPEED = 0.05  # L/T1; of the foot, which gains it in T1
 _OURS = 1e4  # times the mass of the model, as the inertia of a slide that we move
 _AFFINE = mujoco.mjtBias.mjBIAS_AFFINE
 
@@ -89,3 +91,22 @@ def _actuated(actuator: int, joint: int, model: mujoco.MjModel, sense: float) ->
         data.ctrl[actuator] = gear * (start + sense * way if by_place else sense * speed)
 
     return move
+
+
+def readings(
+    model: mujoco.MjModel, rest: Floats, drive: Drive, length: float, period: float, steps: int
+) -> Floats | None:
+    """Of all sensors, a row a step; None if they do not stay finite."""
+    data, step = mujoco.MjData(model), model.opt.timestep
+    data.qpos[:] = rest
+    rows = np.empty((steps, model.nsensordata))
+    for i in range(steps):
+        time = (i + 1) * step / period
+        way = time**2 / 2 if time < 1 else time - 0.5
+        speed = SPEED * min(time, 1.0) * length / period
+        drive(data, SPEED * way * length, speed)
+        mujoco.mj_step(model, data)
+        rows[i] = data.sensordata
+    if has_diverged(data):
+        return None
+    return rows

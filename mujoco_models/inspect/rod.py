@@ -67,6 +67,12 @@ def rod_of(model: mujoco.MjModel, flex: int) -> Rod:
             f"flex {name!r}", "with edges that nothing keeps at their lengths", "a beam",
             'constrain them: <edge equality="true" .../>',
         )  # fmt: skip
+    if model.flex_edgestiffness[flex] or model.flex_edgedamping[flex]:
+        raise InputError(
+            f"flex {name!r}", "with springs or dampers in its edges", "one of constrained edges",
+            "take stiffness and damping off <edge>: it is measured by MuJoCo's discrete steps, "
+            "which have none",
+        )  # fmt: skip
     if bodies[0] != bodies[1] and bodies[-1] == bodies[-2]:
         vertices, bodies = vertices[::-1], bodies[::-1]
     holder = int(bodies[0])

@@ -10,6 +10,7 @@ from mujoco_models.inspect.drive import name_of
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.measured import Sensed, nearest_axes
+from mujoco_models.inspect.parts import masses_of
 
 Held: TypeAlias = HeldChain | HeldRod
 
@@ -81,6 +82,7 @@ def _seen(
         cutoff,
         bool((joints == mujoco.mjtJoint.mjJNT_FREE).any()),
         int(held.model.body_weldid[body]) in held.parts.chain,
+        float(held.model.body_subtreemass[body] - masses_of(held.model, held.parts.chain).sum()),
         float(held.late[sensor]),
     )
 

@@ -11,14 +11,13 @@ import numpy as np
 
 from analytic.numerics.arrays import Floats
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.moved import Drive, drive_to
+from mujoco_models.inspect.moved import SPEED, Drive, drive_to, readings
 from mujoco_models.inspect.parts import Parts
-from mujoco_models.quiet import has_diverged
 
 STRICT = (("solver", "Newton"), ("iterations", "100"), ("ls_iterations", "50"),
           ("tolerance", "1e-15"), ("ls_tolerance", "0.01"))  # fmt: skip
 """Attributes of a file's option: as MuJoCo has them, but for a tolerance that is never met."""
-_WAY, _SPEED = 0.2, 0.05  # L and L/T1; of the foot, which gains its speed in T1
+_WAY = 0.2  # L; of the foot
 _AT, _ROUND, _DEPTH = 0.8, 0.2, 1.5  # L; of the object: where it is met, its radius, half its depth
 _STATION = 0.6  # T1; from one of 60 stations to the next
 _FEWEST_STEPS, _MOST_STEPS = 8, 2000
@@ -27,6 +26,7 @@ _FEWEST_STEPS, _MOST_STEPS = 8, 2000
 def unsolved(
     spec: mujoco.MjSpec,
     parts: Parts,
+    rest: Floats,
     frame: tuple[Floats, Floats],
     radius: float,
     rigidity: float,
@@ -46,13 +46,17 @@ def unsolved(
         drive = _drive(model, parts, axes)
     except (ValueError, mujoco.FatalError, InputError):  # as other remarks say
         return 0.0
-    own = _readings(model, drive, length, period)
+    wanted = math.ceil(_WAY / SPEED * period / model.opt.timestep)
+    steps = min(max(wanted, _FEWEST_STEPS), _MOST_STEPS)
+    own = readings(model, rest, drive, length, period, steps)
     model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
     for name, text in STRICT[1:]:
         setattr(model.opt, name, float(text) if "tolerance" in name else int(text))
-    meant = _readings(model, drive, length, period)
+    meant = readings(model, rest, drive, length, period, steps)
     if meant is None or own is None:
         return 0.0 if meant is None else math.inf
+    width = max(1, min(round(_STATION * period / model.opt.timestep), steps // 4))
+    own, meant = (_means(rows, width) for rows in (own, meant))
     units = {parts.force: rigidity / length**2, parts.torque: rigidity / length}
 
     found = 0.0
@@ -63,6 +67,11 @@ def unsolved(
             most = max(least, np.linalg.norm(meant[:, mine], axis=1).max())
             found = max(found, float(np.sqrt(np.mean(by**2)) / most))
     return found
+
+
+def _means(rows: Floats, width: int) -> Floats:
+    sums = np.cumsum(rows, axis=0)
+    return np.asarray((sums[width:] - sums[:-width]) / width)
 
 
 def _put_object(spec: mujoco.MjSpec, nodes: Floats, axes: Floats, radius: float) -> None:
@@ -94,22 +103,3 @@ def _drive(model: mujoco.MjModel, parts: Parts, axes: Floats) -> Drive:
             data.mocap_pos[-1] = start + way * axes[0]
 
         return move
-
-
-def _readings(model: mujoco.MjModel, drive: Drive, length: float, period: float) -> Floats | None:
-    """Of all sensors, averaged over a station, in rows; None if they do not stay finite."""
-    data, step = mujoco.MjData(model), model.opt.timestep
-    count = min(max(math.ceil(_WAY / _SPEED * period / step), _FEWEST_STEPS), _MOST_STEPS)
-    rows = np.empty((count, model.nsensordata))
-    for i in range(count):
-        time = (i + 1) * step / period
-        way = time**2 / 2 if time < 1 else time - 0.5
-        speed = _SPEED * min(time, 1.0) * length / period
-        drive(data, _SPEED * way * length, speed)
-        mujoco.mj_step(model, data)
-        rows[i] = data.sensordata
-    if has_diverged(data):
-        return None
-    width = max(1, min(round(_STATION * period / step), count // 4))
-    sums = np.cumsum(rows, axis=0)
-    return np.asarray((sums[width:] - sums[:-width]) / width)

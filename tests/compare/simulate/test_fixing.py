@@ -262,6 +262,9 @@ def test_a_spring_on_a_slide_is_taken_off_where_it_is_felt(tmp_path, drive, soun
         ("50", 'velocity kv="150"', {"foot"}),
         ("50", 'velocity kv="5000"', set()),
         ("1e-3", 'velocity kv="50"', {"foot"}),
+        # One that nothing damps swings on, however fast.
+        ("50", 'position kp="5e3"', {"foot"}),
+        ("50", 'position kp="5e3" kv="1e3"', set()),
     ],
 )
 def test_a_foot_that_does_not_follow_is_in_the_readings(tmp_path, mass, drive, said):
@@ -269,6 +272,37 @@ def test_a_foot_that_does_not_follow_is_in_the_readings(tmp_path, mass, drive, s
     driven = f'<actuator><{drive} joint="rail"/></actuator></mujoco>'
     path = on_rail(tmp_path, heavy, (MOTOR, driven), (' armature="1e5"', ""))
     assert faults_in(Inspection(inspect_model(path))) == said
+
+
+def test_a_heavy_arm_that_swings_is_kept_from_the_sensors(tmp_path):
+    """Springs held it, and it was sound; its inertia made a moment 2.6 times the largest."""
+    arm = '<body name="arm"><inertial pos="0 -0.3 0" mass="90" diaginertia="1 1 1"/>'
+    hinge = '<joint name="elbow" pos="0 -1 0" axis="0 0 1" stiffness="4e3"/><site name="clamp"'
+    motor = '<actuator><motor joint="elbow"/></actuator></mujoco>'
+    ends = ("</worldbody>", "</body></worldbody>"), ("</mujoco>", motor)
+    path = on_rail(tmp_path, ('<site name="clamp"', f"{arm}{hinge}"), *ends)
+    before, after = fixed(path)
+    assert faults_in(before) == {"foot"}
+    assert after.inspection.sound
+    assert str(after.edits[0]).startswith('<body name="clamp-body"><site name=')
+    case = path.with_name("case.toml")
+    case.write_text(case_of(after.inspection.found, path.with_name("fixed.xml"), {}))
+    job = load_case(case)
+    moved = simulate_model(job.case, job.model, job.motion, job.settings)
+    exact = solve_sweep(job.case).values("moment_z")
+    off = moved.values("moment_z") - exact
+    assert abs(off[1:50]).max() < 0.02 * abs(exact).max()  # until it lets go
+
+
+def test_what_a_frame_holds_gets_no_body_around_it(tmp_path):
+    """It would be where the frame is, and not the foot; the fault is left, and said."""
+    driven = '<actuator><position joint="rail" kp="5e3"/></actuator></mujoco>'
+    heavy = (WEIGHT, WEIGHT.replace('mass="1e-3"', 'mass="50"')), (' armature="1e5"', "")
+    first, end = '<body name="whisker1"', "</body></worldbody>"
+    frame = (first, f'<frame pos="0 0 0">{first}'), (end, f"</frame>{end}")
+    before, after = fixed(on_rail(tmp_path, *heavy, (MOTOR, driven), *frame))
+    assert faults_in(before) == faults_in(after.inspection) == {"foot"}
+    assert len(after.edits) == 2
 
 
 def test_each_joint_of_an_arm_gives_way_by_its_own_arm(tmp_path):

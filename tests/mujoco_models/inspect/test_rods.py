@@ -8,6 +8,7 @@ import pytest
 
 from analytic import InputError
 from mujoco_models import available_beams, inspect_model
+from mujoco_models.quiet import unlogged
 from tests.mujoco_models.inspect.rods import Rod
 
 pytestmark = pytest.mark.skipif("rod" not in available_beams(), reason="a rod bends since MuJoCo 4")
@@ -100,12 +101,32 @@ def test_sensors_of_its_own_tree_read_nothing_of_contacts(tmp_path):
         (Rod(pin="0"), "flex 'hair' = held by fewer than two vertices.*<pin id=\"0 1\"/>"),
         (Rod(edge='<edge equality="false"/>'), "flex 'hair' = with edges that nothing keeps"),
         (Rod(hand="", own_tree=True, rigidity=0.0), "flex 'hair' = without a stiffness"),
+        (Rod(edge='<edge equality="true" damping="1"/>'), "flex 'hair' = with springs or dampers"),
     ],
 )
 def test_what_is_no_vibrissa_is_one_line(tmp_path, rod, said):
+    path = rod.write(tmp_path)
+    path.write_text(rod.text.replace('"discrete"', '"Euler"'))
     with pytest.raises(InputError, match=said) as caught:
-        measured(tmp_path, rod)
+        inspect_model(path)
     assert "\n" not in str(caught.value)
+
+
+def test_eulers_steps_are_stable_up_to_what_is_stated(tmp_path):
+    """They broke its inspection."""
+    path = tmp_path / "rod.xml"
+    rod = Rod(elasticity="", own_tree=True, hand="", edge='<edge equality="true"/>')
+    path.write_text(rod.text.replace('"discrete"', '"Euler"'))
+    stated, speeds = inspect_model(path).stable_step, []
+    for share in (0.98, 1.02):
+        model = mujoco.MjModel.from_xml_path(str(path))
+        model.opt.timestep = share * stated
+        data = mujoco.MjData(model)
+        data.qvel[:] = 1e-9 * np.random.default_rng(0).standard_normal(model.nv)
+        with unlogged():
+            mujoco.mj_step(model, data, 1500)
+        speeds.append(np.abs(data.qvel).max())
+    assert speeds[0] < 1e-6 < speeds[1]
 
 
 def test_steps_too_short_to_be_measured_by_are_refused_at_once(tmp_path):
