@@ -71,11 +71,13 @@ def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: P
         first = [] if done else [one for one in faults if one.subject == "EI" and one.edits]
         edits = (edit for fault in first or faults for edit in fault.edits)
         wanted = dict.fromkeys(edit.with_free_names(model) for edit in edits)
-        new = [
+        each = (
             edit.of(model, now) if isinstance(edit, Edit) else edit
             for edit in wanted
             if isinstance(edit, Edit) or edit not in done
-        ]
+        )
+        # What was put in has no number in the model as it was: what is left of it, is said.
+        new = [one for one in each if isinstance(one, Insert) or one.numbers or one.of_all]
         if files and not {*new}.difference(done):
             break
         done += new

@@ -19,6 +19,11 @@ class Edit:
     attributes: tuple[tuple[str, str], ...]  # names and values; an empty value takes it away
     numbers: tuple[int, ...] = ()  # of the elements in the compiled model
 
+    @property
+    def of_all(self) -> bool:
+        """Whether it is of the model, and not of elements that have numbers."""
+        return self.kind in ("option", "flag")
+
     def of(self, before: mujoco.MjModel, now: mujoco.MjModel) -> "Edit":
         """With the numbers that its elements had before others, which have names, were put in."""
         if self.kind not in _COUNTS:

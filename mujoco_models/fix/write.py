@@ -64,7 +64,7 @@ class Texts:
 
     def set(self, edit: Edit) -> None:
         """Where an attribute stands already; else in a default of many, or in each element."""
-        if edit.kind in ("option", "flag"):
+        if edit.of_all:
             self._set_option(edit.kind, dict(edit.attributes))
             return
         found = [self._places.element(edit.kind, i) for i in edit.numbers]

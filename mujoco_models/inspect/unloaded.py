@@ -1,8 +1,8 @@
 """What drive and hand of a user's model add to its readings where nothing touches.
 
-The model is swept past nothing, without gravity, once as it is and once on a foot that keeps its
-speed. A drive that swings or stays behind, and joints that give way, set in motion what the sensors
-carry, and the vibrissa.
+The model is swept past nothing, without gravity and limits, once as it is and once on a foot that
+keeps its speed. A drive that swings or stays behind, and joints that give way, set in motion what
+the sensors carry, and the vibrissa.
 """
 
 import math
@@ -47,7 +47,8 @@ def unloaded(
         return 0.0, 0.0
     stated = copy(model)
     stated.opt.gravity[:] = 0
-    stated.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    for met in (mujoco.mjtDisableBit.mjDSBL_CONTACT, mujoco.mjtDisableBit.mjDSBL_LIMIT):
+        stated.opt.disableflags |= int(met)
     heavy = copy(stated)
     try:
         mover, drive = mover_of(model, parts.foot, left), drive_to(stated, parts.foot, left)

@@ -274,6 +274,15 @@ def test_a_foot_that_does_not_follow_is_in_the_readings(tmp_path, mass, drive, s
     assert faults_in(Inspection(inspect_model(path))) == said
 
 
+def test_a_slide_without_a_way_is_that_alone(tmp_path):
+    """It was also one that does not keep its speed, and got a body between foot and sensors."""
+    heavy = (WEIGHT, WEIGHT.replace('mass="1e-3"', 'mass="50"')), (' armature="1e5"', "")
+    driven = '<actuator><velocity kv="5000" joint="rail"/></actuator></mujoco>'
+    short = ('name="rail"', 'name="rail" limited="true" range="-1e-9 1e-9"')
+    (fault,) = Inspection(inspect_model(on_rail(tmp_path, *heavy, (MOTOR, driven), short))).faults
+    assert "its slide ends" in fault.text
+
+
 def test_a_heavy_arm_that_swings_is_kept_from_the_sensors(tmp_path):
     """Springs held it, and it was sound; its inertia made a moment 2.6 times the largest."""
     arm = '<body name="arm"><inertial pos="0 -0.3 0" mass="90" diaginertia="1 1 1"/>'
