@@ -184,8 +184,7 @@ def simulate_motion(
         ``contact_losses``, how often the contact was lost since the station before, and
         ``penetration`` [length]. A station is ``"chattering"`` if the contact was lost more than
         once or for 5 % of its way, ``"creeping"`` if it moves along the object with less friction
-        than its coefficient says, ``"sunk"`` if the contact is deeper than the vibrissa's radius,
-        and ``"lost"`` if nothing touches there but does later.
+        than its coefficient says, and ``"lost"`` if nothing touches there but does later.
         ``second_contact_*`` are as of `simulate_sweep`, past several objects, too.
         ``provenance["events"]["snap_off"]`` is where the last contact was lost; in space the events
         are a list, and ``friction_*`` is MuJoCo's friction over its normal force.

@@ -25,7 +25,6 @@ STATUSES = (
     "touches another",
     "sticks",
     "creeping",
-    "sunk",
 )
 SECOND_CONTACT = (
     "second_contact_force",

@@ -39,7 +39,6 @@ _MEANINGS = {
     "with friction, take cone elliptic and impratio 100",
     "creeping": ": MuJoCo's friction is less than its coefficient where a contact moves slowly; "
     "cone elliptic with impratio 100, a faster foot, or harder contacts in shorter steps",
-    "sunk": ": the contact is deeper than the vibrissa's radius; take harder ones in shorter steps",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",
@@ -174,6 +173,12 @@ def print_sweep(readings: Readings | SpatialReadings) -> None:
         if name in table:
             worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
             parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}")
+    deepest = np.nanmax(readings.values("penetration"), initial=0.0)
+    if deepest > readings.beam.radius > 0:
+        parts.append(
+            f"the contact sinks by up to {deepest / readings.beam.radius:.2g} radii, past the "
+            "vibrissa's axis: take harder ones in shorter steps"
+        )
     terminal.print_line(f"{readings.source}: {'; '.join(parts)}")
 
 

@@ -187,13 +187,11 @@ class MovingModel(SteppedModel):
     def state(self, speed: float) -> dict[str, Any]:
         """Contact and energy of the last step, dimensionless."""
         contacts = self.contacts()
-        places = self._places(contacts)
-        touched = contacts.of_places(self.data.contact.pos[:, :2], places, self._push)
         return {
             "tip_angle": self.tip_angle,
-            "status": self._status(speed, touched["penetration"]),
+            "status": "creeping" if self._creeps(speed) else "ok",
             "kinetic_share": self.kinetic_share(),
-            **touched,
+            **contacts.of_places(self.data.contact.pos[:, :2], self._places(contacts), self._push),
         }
 
     def _places(self, contacts: Contacts) -> list[Booleans]:

@@ -29,7 +29,6 @@ class SteppedModel(ABC):
 
     _is_mine: Booleans  # which geoms are the vibrissa's
     _is_object: Booleans  # which are the object's
-    _radius: float  # of the vibrissa
 
     _follows_inertia = False  # whether contacts have their stiffness by `_follow_inertia`
 
@@ -119,9 +118,8 @@ class SteppedModel(ABC):
             # to 85 %, with 2e4 by 0.6.
             holds = 2e4 if corners else 1e3
             slides = _SLIDES * (1e3 / holds) ** 0.5
-            soft = (
-                0.9 * longest * (motion.stiffness / holds) ** 0.5
-            )  # critical: damping by its root
+            # Critical: damping by its root.
+            soft = 0.9 * longest * (motion.stiffness / holds) ** 0.5
             # So slow and damped, of 24 stations past three objects 23 rest, readings within 7e-3.
             slow = 'speed = 0.025, damping_ratio = 0.2, average = 0.2, cone = "elliptic"'
             step = f"timestep = {min(soft, slides):.2g}"
@@ -142,15 +140,6 @@ class SteppedModel(ABC):
         for i, wrench in zip(contacts, wrenches, strict=True):
             mujoco.mj_contactForce(self.model, self.data, i, wrench)
         return wrenches[:, :3]
-
-    def _status(self, speed: float, depth: float) -> str:
-        """How far a contact is to be trusted, by its depth, too [L].
-
-        Deeper than the radius the object is past the axis, and is pushed out on the wrong side.
-        """
-        if depth > self._radius:
-            return "sunk"
-        return "creeping" if self._creeps(speed) else "ok"
 
     def _creeps(self, speed: float) -> bool:
         """Whether a contact slides, and MuJoCo's friction is less than its coefficient says.

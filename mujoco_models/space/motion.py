@@ -123,9 +123,9 @@ class MovingSpace(SteppedModel):
         tip = arc > 1 - _AT_TIP * (1 - float(self._begins[-1]))
         return row | {
             "contact_arc_length": arc,
-            "penetration": (deep := float(weights @ depth)),
+            "penetration": float(weights @ depth),
             "phase": "tip" if tip else "tangent",
-            "status": self._status(speed, deep),
+            "status": "creeping" if self._creeps(speed) else "ok",
         }
 
 

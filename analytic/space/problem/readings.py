@@ -35,7 +35,6 @@ STATUSES_IN_SPACE = (
     "unsettled",
     "chattering",
     "creeping",
-    "sunk",
     "lost",
 )
 _WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}

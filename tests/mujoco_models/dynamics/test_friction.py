@@ -18,6 +18,7 @@ from analytic import (
 from analytic.problem.table import says
 from analytic.space import FootPath, SpatialCase, cylinder, solve_space, sphere
 from analytic.space.problem.readings import FORCE, FRICTION, MOMENT
+from compare.commands.sweeping import print_sweep
 from mujoco_models import Motion, Settings, SpatialSettings, simulate_motion, simulate_space
 
 CASE = replace(named_case("catenary"), friction=0.2, sweep=Sweep(60))
@@ -112,15 +113,14 @@ WEDGE = Case(
 
 
 @pytest.mark.slow
-def test_a_corner_past_the_axis_says_so():
-    """Readings were off by 36 to 85 %, and all stations ok."""
+def test_advised_contacts_hold_at_a_corner(capsys):
+    """As stiff as past a circle, readings were off by 36 to 85 %: it sank past the axis."""
     known, quick = solve_sweep(WEDGE).values("force_y"), replace(SLOW, speed=0.1, impratio=100.0)
     for stiffness, step, sinks in ((1e3, 0.002, True), (2e4, 0.00045, False)):
         motion = replace(quick, contact_stiffness=stiffness, timestep=step)
         moved = simulate_motion(WEDGE, motion, Settings(segments=20))
-        deep = says(moved.table["status"], "sunk")
-        assert (deep == (moved.values("penetration") > WEDGE.radius)).all()
-        assert deep.any() == sinks
+        print_sweep(moved)
+        assert ("past the vibrissa's axis" in capsys.readouterr().out) == sinks
         off = np.abs(moved.values("force_y") - known).max() / np.abs(known).max()
         assert (off > 0.2) == sinks, off
 
