@@ -203,11 +203,13 @@ def on_light_body(found: MeasuredBeam) -> tuple[Edit | Insert, ...]:
     sensors = [s for s in (found.force, found.torque) if s is not None]
     if found.springs == "flex" or not found.body:
         return ()
-    return _on_body(found, _site(found, "clamp-site")), _reading("clamp-site", *sensors)
+    site = _site(found, "clamp-body-site")
+    return _on_body(found, site, "clamp-body"), _reading("clamp-body-site", *sensors)
 
 
-def _on_body(found: MeasuredBeam, site: Insert) -> Insert:
-    return Insert(site.text, found.leads, "clamp-body")
+def _on_body(found: MeasuredBeam, site: Insert, name: str) -> Insert:
+    """Each treatment has names of its own: what another one put in stands already."""
+    return Insert(site.text, found.leads, name)
 
 
 def _reading(site: str, *sensors: Sensed) -> Edit:
@@ -220,7 +222,7 @@ def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
     names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
     site = _site(found, f"clamp-{words[0]}")
     if found.body_mass > found.mass and found.springs != "flex":  # they would feel it
-        site = _on_body(found, site)
+        site = _on_body(found, site, "sensor-body")
     return site, Insert(f"<sensor>{names}</sensor>")
 
 

@@ -6,7 +6,7 @@ from itertools import chain, count
 
 import mujoco
 
-_COUNTS = {"joint": "njnt", "site": "nsite"}  # of what is put between others
+_COUNTS = {"joint": "njnt", "site": "nsite", "sensor": "nsensor"}  # of what is put between others
 _NAMED = re.compile(r'\b(name|site|joint)="([^"]*)"')  # by what is put in
 
 
