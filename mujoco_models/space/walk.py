@@ -39,7 +39,9 @@ _ASTRAY = 2.0  # of that; Newton's method that leads farther is not on its way t
 # L, of the contact: what comes to rest farther away depends on its motion. This side's own limit,
 # as is the next line: the closed form has others, which may be moved without these.
 _LANDING = 0.12
-_AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
+# L, of the foot, for a way down that does not begin; by the first three alone 7 of 72 sweeps along
+# a box's face, each begun elsewhere, ended unsettled at its edge.
+_AHEAD = 0.0, 1e-3, 4e-3, 3e-4, 3e-3
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
