@@ -77,8 +77,7 @@ def without_contact(found: Found, limits: Limits, noise: Allowance) -> str | Non
     off = np.asarray((np.abs(error) > np.array(allowed)[:, None]).any(axis=0))
     begins = None
     if isinstance(found, Measurement) and isinstance(limits, Tolerances):
-        begins, between = begun(found, limits, at)
-        off &= ~between
+        begins, _ = begun(found, limits, at)
     beside = _free(found, off, error, at, bool(released[off].all())) if off.any() else None
     return "; beside that ".join(filter(None, (begins, beside))) or None
 

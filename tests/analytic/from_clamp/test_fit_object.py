@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from analytic import (
     CLAMP_READINGS,
@@ -45,6 +46,22 @@ def test_a_family_has_the_contour_of_the_simpler_one(name):
     np.testing.assert_allclose(point.xi, 0.1 + 0.2 * np.sin(angles), atol=1e-9)
     np.testing.assert_allclose(point.eta, 0.9 - 0.2 * np.cos(angles), atol=1e-9)
     np.testing.assert_allclose(point.stretch / point.turning, 0.2, rtol=1e-9)
+
+
+def test_a_convex_contour_is_the_integral_of_its_radius():
+    """By SciPy's quadrature, of radii from 0.01 to 2 L between its knots and beyond them."""
+    low, high = np.quantile(angles := np.linspace(-0.5, 1.0, 100), [0.05, 0.95])
+    knots, numbers = np.linspace(low, high, 7), np.array([0.1, 0.5, -1, -4.6, 0.7, -2, -3, 0, -1])
+    contour = families(angles)["convex"].profile(numbers)
+
+    def radius(a):
+        return np.exp(np.interp(a, knots, numbers[2:]))
+
+    for end in (-1.5, -0.2, 0.6, 1.5):
+        place = contour.xi(np.array([end])), contour.eta(np.array([end]))
+        for start, along, found in zip(numbers[:2], (np.cos, np.sin), place, strict=True):
+            exact, _ = quad(lambda a, f=along: radius(a) * f(a), knots[3], end, points=knots)
+            assert found[0] == pytest.approx(start + exact, abs=1e-7)
 
 
 @pytest.mark.parametrize("n", [1.3, 2.6, 12.0])
